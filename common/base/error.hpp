@@ -1,0 +1,42 @@
+/// The errors a person causes or meets, thrown at the edges (files, command lines, DDS entities) and caught once, in
+/// runtime/run.hpp, which prints the message and exits with the code. Nothing in the control loop throws.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace baton {
+
+/// The exit codes of every Baton program; README.md documents them.
+enum class ExitCode : int {
+  kOk = 0,
+  kFailed = 1,        // the thing asked for was tried and did not succeed
+  kUsage = 2,         // the command line, a file or a value given is wrong
+  kUnavailable = 3,   // something needed is missing or taken: no such run, cell in use, port closed
+  kAborted = 4,       // a run was stopped before its end by its own policy
+  kInterrupted = 130  // Ctrl-C or SIGTERM
+};
+
+/// The message says what was expected, what was found, and what to do.
+class Error : public std::runtime_error {
+ public:
+  Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  [[nodiscard]] ExitCode code() const { return code_; }
+
+ private:
+  ExitCode code_;
+};
+
+/// Wrong input: a file, a value, an argument.
+class UsageError : public Error {
+ public:
+  explicit UsageError(const std::string& message) : Error(ExitCode::kUsage, message) {}
+};
+
+/// Something needed is not there or is taken.
+class UnavailableError : public Error {
+ public:
+  explicit UnavailableError(const std::string& message) : Error(ExitCode::kUnavailable, message) {}
+};
+
+}  // namespace baton

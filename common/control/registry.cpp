@@ -1,0 +1,64 @@
+/// The list of laws: one line each. The function named here is defined at the end of the law's own file.
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "control/law.hpp"
+#include "control/nearest_name.hpp"
+
+// clang-format off
+#define BATON_LAWS(law)           \
+  law(forcePi)                    \
+  law(impedance)                  \
+  law(jointInverseDynamics)       \
+  law(jointPd)                    \
+  law(operationalInverseDynamics)
+// clang-format on
+
+namespace baton {
+
+namespace laws {
+#define BATON_DECLARE(law) LawInfo law();
+BATON_LAWS(BATON_DECLARE)
+#undef BATON_DECLARE
+}  // namespace laws
+
+const std::vector<LawInfo>& allLaws() {
+  static const std::vector<LawInfo> all = [] {
+#define BATON_CALL(law) laws::law(),
+    std::vector<LawInfo> list{BATON_LAWS(BATON_CALL)};
+#undef BATON_CALL
+    std::sort(list.begin(), list.end(), [](const LawInfo& a, const LawInfo& b) { return a.name < b.name; });
+    return list;
+  }();
+  return all;
+}
+
+const LawInfo& findLaw(const std::string& name) {
+  std::vector<std::string> known;
+  for (const LawInfo& law : allLaws()) {
+    if (law.name == name) return law;
+    known.push_back(law.name);
+  }
+  throw UsageError(unknownName("law", name, known));
+}
+
+std::unique_ptr<Law> makeLaw(const std::string& name, const RobotModel& model, const ParameterValues& given) {
+  const LawInfo& law = findLaw(name);
+  try {
+    return law.make(model, completeParameters(law.parameters, given, model.size()));
+  } catch (const UsageError& error) {
+    throw UsageError("law " + name + ": " + error.what());
+  }
+}
+
+const char* toString(LawStatus status) {
+  switch (status) {
+    case LawStatus::kOk: return "ok";
+    case LawStatus::kNotFinite: return "not finite";
+    case LawStatus::kSingular: return "singular";
+    case LawStatus::kMissingReference: return "missing reference";
+  }
+  return "unknown";
+}
+
+}  // namespace baton

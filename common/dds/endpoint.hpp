@@ -1,0 +1,70 @@
+/// Readers and writers of raw payloads. Typed ones (typed.hpp) stand on these.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "dds/participant.hpp"
+#include "dds/types.hpp"
+
+namespace baton::dds {
+
+struct EndpointOptions {
+  std::string topic;
+  std::string type;  // "baton::msg::PlantState"
+  Profile profile = Profile::kLoop;
+  std::uint32_t max_payload = 1024;  // bytes; memory is set aside for this much, larger samples still pass
+  bool keyed = false;                // must equal the other side's
+  bool exclusive_ownership = false;  // likewise
+  bool best_effort = false;          // reader: also match writers that do not resend
+};
+
+/// Called when a counterpart is matched or lost, on a DDS thread.
+using MatchCallback = std::function<void()>;
+
+class RawWriter {
+ public:
+  /// Throws UnavailableError when DDS refuses.
+  RawWriter(Participant& participant, const EndpointOptions& options, MatchCallback on_match = {});
+  ~RawWriter();
+  RawWriter(const RawWriter&) = delete;
+  RawWriter& operator=(const RawWriter&) = delete;
+
+  /// Sends a payload, encapsulation header included. Never blocks. Returns false when DDS refuses it.
+  [[nodiscard]] bool write(std::span<const std::byte> payload) noexcept;
+  /// The same with the source timestamp of the original, for replays.
+  [[nodiscard]] bool write(std::span<const std::byte> payload, std::int64_t source_timestamp_ns) noexcept;
+
+  [[nodiscard]] std::set<GuidPrefix> matched() const;
+  [[nodiscard]] Guid guid() const;
+  [[nodiscard]] std::uint64_t count() const;  // samples written; sequence numbers run from 1 to this
+  /// Waits until every matched reader has acknowledged everything, at most `timeout_ms`.
+  bool waitForAcknowledgments(int timeout_ms);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+class RawReader {
+ public:
+  using Callback = std::function<void(const RawSample&)>;
+
+  /// The callback runs on a DDS thread, once a sample, in order of arrival.
+  RawReader(Participant& participant, const EndpointOptions& options, Callback callback, MatchCallback on_match = {});
+  ~RawReader();
+  RawReader(const RawReader&) = delete;
+  RawReader& operator=(const RawReader&) = delete;
+
+  [[nodiscard]] std::set<GuidPrefix> matched() const;
+  /// Samples the middleware itself knows it could not deliver.
+  [[nodiscard]] std::uint64_t lost() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace baton::dds

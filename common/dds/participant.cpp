@@ -1,0 +1,205 @@
+#include "dds/participant.hpp"
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <algorithm>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <sstream>
+
+#include "base/error.hpp"
+#include "dds/participant_impl.hpp"
+#include "dds/raw_type.hpp"
+
+namespace baton::dds {
+namespace {
+using namespace eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+constexpr int kMaxDomain = 232;
+constexpr int kSocketBuffer = 4 << 20;  // loopback UDP loses datagrams when a busy receiver's buffer is full
+
+// Discovery data of a Baton process: three fields, one a line.
+std::string encodePeer(const Peer& peer) { return "baton\n" + peer.cell + "\n" + peer.run + "\n" + peer.service; }
+
+std::optional<Peer> decodePeer(const std::string& text) {
+  std::istringstream lines(text);
+  std::string tag;
+  Peer peer;
+  if (!std::getline(lines, tag) || tag != "baton") return std::nullopt;
+  std::getline(lines, peer.cell);
+  std::getline(lines, peer.run);
+  std::getline(lines, peer.service);
+  return peer;
+}
+
+DomainParticipantQos participantQos(const ParticipantOptions& options) {
+  DomainParticipantQos qos = DomainParticipantFactory::get_instance()->get_default_participant_qos();
+  qos.name(options.service);
+  const std::string data = encodePeer({options.cell, options.run, options.service});
+  qos.user_data().data_vec({data.begin(), data.end()});
+
+  qos.transport().use_builtin_transports = false;
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->interfaceWhiteList = {"127.0.0.1"};  // the default would open every interface of the machine
+  udp->sendBufferSize = kSocketBuffer;
+  udp->receiveBufferSize = kSocketBuffer;
+  qos.transport().user_transports.push_back(udp);
+  if (options.transport == Transport::kSharedMemory) {
+    qos.transport().user_transports.push_back(
+        std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>());
+  }
+
+  auto& discovery = qos.wire_protocol().builtin.discovery_config;
+  // Announcing often lets late joiners match within 200 ms. The lease outlives a process that is stopped for a while
+  // and then goes on; processes that end are noticed by whoever launched them, not by DDS.
+  discovery.leaseDuration_announcementperiod = {0, 100'000'000};
+  discovery.leaseDuration = {20, 0};
+  discovery.initial_announcements.count = 5;
+  discovery.initial_announcements.period = {0, 20'000'000};
+  qos.wire_protocol().builtin.typelookup_config.use_client = false;
+  qos.wire_protocol().builtin.typelookup_config.use_server = false;
+  return qos;
+}
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw UnavailableError(
+      "DDS could not create " + what +
+      ": expected loopback UDP (127.0.0.1) to be usable and memory to be free; check both and retry");
+}
+}  // namespace
+
+Guid toGuid(const rtps::GUID_t& guid) {
+  Guid result;
+  std::copy_n(guid.guidPrefix.value, 12, result.bytes.begin());
+  std::copy_n(guid.entityId.value, 4, result.bytes.begin() + 12);
+  return result;
+}
+
+Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_in) : on_peer(std::move(on_peer_in)) {
+  if (options.domain < 0 || options.domain > kMaxDomain) {
+    throw UsageError("DDS domain: expected 0 to 232, found " + std::to_string(options.domain));
+  }
+  participant = DomainParticipantFactory::get_instance()->create_participant(options.domain, participantQos(options),
+                                                                             this, StatusMask::none());
+  if (participant == nullptr) refuse("a participant in domain " + std::to_string(options.domain));
+  PublisherQos publisher_qos = participant->get_default_publisher_qos();
+  SubscriberQos subscriber_qos = participant->get_default_subscriber_qos();
+  publisher_qos.partition().push_back(options.partition.c_str());
+  subscriber_qos.partition().push_back(options.partition.c_str());
+  publisher = participant->create_publisher(publisher_qos);
+  subscriber = participant->create_subscriber(subscriber_qos);
+  if (publisher == nullptr || subscriber == nullptr) refuse("a publisher and a subscriber");
+}
+
+Participant::Impl::~Impl() {
+  // Stops discovery callbacks first: they use members of this object.
+  participant->set_listener(nullptr);
+  participant->delete_contained_entities();
+  DomainParticipantFactory::get_instance()->delete_participant(participant);
+}
+
+void Participant::Impl::on_participant_discovery(DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) {
+  const auto& data = info.info.m_userData;
+  const std::optional<Peer> peer = decodePeer({data.begin(), data.end()});
+  if (!peer) return;
+  GuidPrefix prefix;
+  std::copy_n(info.info.m_guid.guidPrefix.value, prefix.size(), prefix.begin());
+  const bool joined = info.status == rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT ||
+                      info.status == rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT;
+  {
+    const std::lock_guard lock(mutex);
+    if (joined) {
+      peers[prefix] = *peer;
+    } else {
+      peers.erase(prefix);
+    }
+  }
+  if (joined && on_peer) on_peer(*peer);
+}
+
+void Participant::Impl::on_publisher_discovery(DomainParticipant*, rtps::WriterDiscoveryInfo&& info) {
+  if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
+    const std::lock_guard lock(mutex);
+    writers.erase(toGuid(info.info.guid()));
+    return;
+  }
+  const auto& qos = info.info.m_qos;
+  DiscoveredWriter writer{.guid = toGuid(info.info.guid()),
+                          .topic = info.info.topicName().to_string(),
+                          .type = info.info.typeName().to_string(),
+                          .keyed = info.info.topicKind() == rtps::WITH_KEY,
+                          .exclusive_ownership = qos.m_ownership.kind == EXCLUSIVE_OWNERSHIP_QOS,
+                          .reliable = qos.m_reliability.kind == RELIABLE_RELIABILITY_QOS,
+                          .transient_local = qos.m_durability.kind >= TRANSIENT_LOCAL_DURABILITY_QOS,
+                          .partitions = {},
+                          .qos_text = {}};
+  for (const auto& partition : qos.m_partition.getNames()) writer.partitions.emplace_back(partition);
+  writer.qos_text = std::string("reliability: ") + (writer.reliable ? "reliable" : "best_effort") +
+                    "\ndurability: " + (writer.transient_local ? "transient_local" : "volatile") +
+                    "\nownership: " + (writer.exclusive_ownership ? "exclusive" : "shared") +
+                    "\nkeyed: " + (writer.keyed ? "true" : "false") + "\n";
+  WriterCallback callback;
+  {
+    const std::lock_guard lock(mutex);
+    writers[writer.guid] = writer;
+    callback = on_writer;
+  }
+  if (callback) callback(writer);
+}
+
+Topic* Participant::Impl::topic(const std::string& name, const std::string& type, std::uint32_t max_payload,
+                                bool keyed) {
+  const std::lock_guard lock(mutex);
+  if (auto* description = participant->lookup_topicdescription(name)) {
+    if (description->get_type_name() != type) {
+      throw UsageError("topic " + name + ": expected type " + description->get_type_name() + ", found " + type);
+    }
+    return static_cast<Topic*>(description);
+  }
+  TypeSupport support(new RawType(type, max_payload, keyed));
+  support.register_type(participant);
+  Topic* created = participant->create_topic(name, type, participant->get_default_topic_qos());
+  if (created == nullptr) refuse("topic " + name);
+  return created;
+}
+
+Participant::Participant(const ParticipantOptions& options, PeerCallback on_peer)
+    : impl_(std::make_unique<Impl>(options, std::move(on_peer))) {}
+
+Participant::~Participant() = default;
+
+std::optional<Peer> Participant::peer(const GuidPrefix& prefix) const {
+  const std::lock_guard lock(impl_->mutex);
+  const auto found = impl_->peers.find(prefix);
+  return found == impl_->peers.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::vector<Peer> Participant::peers() const {
+  const std::lock_guard lock(impl_->mutex);
+  std::vector<Peer> result;
+  for (const auto& [prefix, peer] : impl_->peers) result.push_back(peer);
+  return result;
+}
+
+void Participant::watchWriters(WriterCallback callback) {
+  std::map<Guid, DiscoveredWriter> known;
+  {
+    const std::lock_guard lock(impl_->mutex);
+    known = impl_->writers;
+    impl_->on_writer = callback;
+  }
+  for (const auto& [guid, writer] : known) callback(writer);
+}
+
+void redirectDdsLog(std::function<void(int level, const std::string& text)> sink) {
+  struct Consumer final : LogConsumer {
+    explicit Consumer(std::function<void(int, const std::string&)> s) : sink(std::move(s)) {}
+    void Consume(const Log::Entry& entry) override { sink(entry.kind == Log::Kind::Error ? 0 : 1, entry.message); }
+    std::function<void(int, const std::string&)> sink;
+  };
+  Log::ClearConsumers();
+  Log::RegisterConsumer(std::make_unique<Consumer>(std::move(sink)));
+}
+
+}  // namespace baton::dds

@@ -1,0 +1,75 @@
+/// One process's membership in a DDS domain: discovery settings, transport, and who else is there.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dds/types.hpp"
+
+namespace baton::dds {
+
+struct ParticipantOptions {
+  int domain = 0;         // 0 to 232
+  std::string partition;  // "cell/run": endpoints in other partitions are never matched; may be a pattern for observers
+  std::string cell;       // the cell this process belongs to, empty for observers of any
+  std::string run;        // the run within the cell; what is left over from another run is told apart by this
+  std::string service;    // name of the service, unique in the run
+  Transport transport = Transport::kUdp;
+};
+
+/// Another process of Baton in the domain, as its discovery data tell.
+struct Peer {
+  std::string cell;
+  std::string run;
+  std::string service;
+};
+
+/// A writer somebody has, ours or not, found by discovery.
+struct DiscoveredWriter {
+  Guid guid;
+  std::string topic;
+  std::string type;
+  bool keyed = false;
+  bool exclusive_ownership = false;
+  bool reliable = false;
+  bool transient_local = false;
+  std::vector<std::string> partitions;
+  std::string qos_text;  // readable, for the recording's metadata
+};
+
+/// Called on a DDS thread: hand it to the executor and return.
+using PeerCallback = std::function<void(const Peer&)>;
+using WriterCallback = std::function<void(const DiscoveredWriter&)>;
+
+/// Owns the participant, a publisher and a subscriber in the partition. Everything made from it must be destroyed
+/// before it.
+class Participant {
+ public:
+  /// @param on_peer  called for every Baton process that joins.
+  /// Throws UsageError for a domain outside 0 to 232 and UnavailableError when DDS refuses.
+  explicit Participant(const ParticipantOptions& options, PeerCallback on_peer = {});
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  /// The Baton process behind a GUID prefix, if discovery has told.
+  [[nodiscard]] std::optional<Peer> peer(const GuidPrefix& prefix) const;
+  [[nodiscard]] std::vector<Peer> peers() const;
+
+  /// Calls back for every writer of somebody else in the domain, those known already first.
+  void watchWriters(WriterCallback callback);
+
+  struct Impl;  // Fast DDS entities, for the other files of this folder
+  [[nodiscard]] Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Sends what the DDS product logs to `sink` (level 0 error, 1 warning) instead of standard output.
+void redirectDdsLog(std::function<void(int level, const std::string& text)> sink);
+
+}  // namespace baton::dds

@@ -1,0 +1,44 @@
+/// Every topic of Baton, one line each. A topic is one struct in idl/ and one line here; recorder and replayer need
+/// none.
+#pragma once
+
+#include "dds/types.hpp"
+#include "msg/loop.h"
+#include "msg/record.h"
+#include "msg/service.h"
+#include "msg/sim.h"
+#include "msg/swap.h"
+
+namespace baton::dds {
+
+template <class T>
+struct Topic {
+  const char* name;
+  const char* type;
+  Profile profile;
+};
+
+namespace topics {
+// clang-format off
+inline constexpr Topic<msg::PlantState>       kPlantState      {"plant_state",       "baton::msg::PlantState",       Profile::kLoop};
+inline constexpr Topic<msg::Contact>          kContact         {"contact",           "baton::msg::Contact",          Profile::kLoop};
+inline constexpr Topic<msg::Reference>        kReference       {"reference",         "baton::msg::Reference",        Profile::kLoop};
+inline constexpr Topic<msg::JointCommand>     kJointCommand    {"joint_command",     "baton::msg::JointCommand",     Profile::kLoop};
+inline constexpr Topic<msg::JointCommand>     kShadowCommand   {"shadow_command",    "baton::msg::JointCommand",     Profile::kLoop};
+inline constexpr Topic<msg::SimRequest>       kSimRequest      {"sim_request",       "baton::msg::SimRequest",       Profile::kRequest};
+inline constexpr Topic<msg::SimReply>         kSimReply        {"sim_reply",         "baton::msg::SimReply",         Profile::kRequest};
+inline constexpr Topic<msg::SimStatus>        kSimStatus       {"sim_status",        "baton::msg::SimStatus",        Profile::kStatus};
+inline constexpr Topic<msg::SwapRequest>      kSwapRequest     {"swap_request",      "baton::msg::SwapRequest",      Profile::kRequest};
+inline constexpr Topic<msg::SwapPlan>         kSwapPlan        {"swap_plan",         "baton::msg::SwapPlan",         Profile::kEvent};
+inline constexpr Topic<msg::SwapAck>          kSwapAck         {"swap_ack",          "baton::msg::SwapAck",          Profile::kEvent};
+inline constexpr Topic<msg::SwapOutcome>      kSwapOutcome     {"swap_outcome",      "baton::msg::SwapOutcome",      Profile::kEvent};
+inline constexpr Topic<msg::ControllerStatus> kControllerStatus{"controller_status", "baton::msg::ControllerStatus", Profile::kStatus};
+inline constexpr Topic<msg::ServiceStatus>    kServiceStatus   {"service_status",    "baton::msg::ServiceStatus",    Profile::kStatus};
+inline constexpr Topic<msg::ServiceManifest>  kServiceManifest {"service_manifest",  "baton::msg::ServiceManifest",  Profile::kEvent};
+inline constexpr Topic<msg::Event>            kEvent           {"event",             "baton::msg::Event",            Profile::kEvent};
+inline constexpr Topic<msg::RecorderStatus>   kRecorderStatus  {"recorder_status",   "baton::msg::RecorderStatus",   Profile::kStatus};
+inline constexpr Topic<msg::ReplayStatus>     kReplayStatus    {"replay_status",     "baton::msg::ReplayStatus",     Profile::kStatus};
+// clang-format on
+}  // namespace topics
+
+}  // namespace baton::dds

@@ -1,0 +1,42 @@
+/// Loads the records of a chunk, or of a run of records outside of any chunk, and checks them.
+#pragma once
+
+#include "mcap/compression.hpp"
+#include "mcap/index.hpp"
+
+namespace baton::mcap {
+
+class ExtentLoader {
+ public:
+  ExtentLoader(const InputFile& file, const ReaderOptions& options) : file_(file), options_(options) {}
+
+  /// The extent's records, decompressed, in `storage`. Throws FormatError, without place, when lengths or the CRC are
+  /// wrong: run it inside guarded().
+  [[nodiscard]] ByteView load(const Extent& extent, Buffer& storage);
+
+  /// Runs work() on an extent. A FormatError in it goes to options.on_damage (false is returned) or on to the caller,
+  /// with the place in the file added.
+  template <class Work>
+  bool guarded(const Extent& extent, Work work) const {
+    try {
+      work();
+      return true;
+    } catch (const FormatError& error) {
+      const std::string what = extent.is_chunk ? "chunk" : "records";
+      if (!options_.on_damage) {
+        throw FormatError(file_.path().string() + ": " + what + " at byte " + std::to_string(extent.offset) + ": " +
+                          error.what());
+      }
+      options_.on_damage({extent.offset, extent.length, error.what()});
+      return false;
+    }
+  }
+
+ private:
+  const InputFile& file_;
+  const ReaderOptions& options_;
+  Decompressor decompressor_;
+  Buffer packed_;
+};
+
+}  // namespace baton::mcap

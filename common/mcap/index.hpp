@@ -1,0 +1,120 @@
+/// What a recording holds and where: taken from its summary when that can be trusted, else found by reading the file
+/// from its start, which also works on a file that was cut off.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mcap/file.hpp"
+#include "mcap/records.hpp"
+
+namespace baton::mcap {
+
+/// A stretch of the file that cannot be used, and why.
+struct Damage {
+  std::uint64_t offset = 0;
+  std::uint64_t length = 0;
+  std::string reason{};
+};
+
+struct ReaderOptions {
+  /// Records and decompressed chunks above this are refused: no damaged length can exhaust the memory.
+  std::uint64_t max_chunk_bytes = std::uint64_t{1} << 30;
+  bool check_crc = true;  // of chunks, attachments and summary
+  /// When given, a damaged chunk is reported here and left out. Otherwise it is thrown as FormatError.
+  std::function<void(const Damage&)> on_damage{};
+};
+
+struct FileInfo {
+  Header header{};
+  std::uint64_t file_bytes = 0;
+  bool is_complete = false;          // it ends as a finished recording does
+  std::uint64_t complete_bytes = 0;  // up to here everything is a whole record; file_bytes when is_complete
+  bool has_summary = false;          // the index came from the file's summary, not from reading the whole file
+  std::string problem{};  // where it was cut and why, or why its summary was not used; empty when all is well
+};
+
+/// A stretch of the file that holds messages: a chunk, or consecutive records outside of any chunk.
+struct Extent {
+  std::uint64_t offset = 0;
+  std::uint64_t length = 0;
+  bool is_chunk = true;
+  std::uint64_t start_time_ns = 0;
+  std::uint64_t end_time_ns = 0;
+  std::vector<ChannelId> channels{};  // with a message in it; empty when not known
+};
+
+struct FileIndex {
+  FileInfo info{};
+  std::map<SchemaId, Schema> schemas{};
+  std::map<ChannelId, Channel> channels{};
+  Statistics statistics{};
+  std::vector<Extent> extents{};  // in file order, not overlapping
+  std::vector<AttachmentIndex> attachments{};
+  std::vector<MetadataIndex> metadata{};
+};
+
+/// Throws FormatError when the file is not MCAP, or is damaged before its end (see ReaderOptions::on_damage).
+[[nodiscard]] FileIndex indexFile(const InputFile& file, const ReaderOptions& options);
+
+/// The two ways, for indexFile: nothing when the file has no summary or one that cannot be trusted, `problem` says why.
+[[nodiscard]] std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions& options,
+                                                   std::string& problem);
+[[nodiscard]] FileIndex scanFile(const InputFile& file, const ReaderOptions& options);
+
+/// A record's place in the file.
+struct RecordPlace {
+  Opcode opcode{};
+  std::uint64_t offset = 0;
+  std::uint64_t body_length = 0;
+  [[nodiscard]] std::uint64_t length() const { return kRecordHeadBytes + body_length; }
+  [[nodiscard]] std::uint64_t end() const { return offset + length(); }
+};
+
+/// Walks from record to record by their lengths, reading heads only.
+class RecordWalk {
+ public:
+  /// @param end  records must lie before this byte.
+  RecordWalk(const InputFile& file, std::uint64_t begin, std::uint64_t end)
+      : file_(file), position_(begin), end_(end) {}
+
+  /// The next record; nothing at the end or where no whole record follows, see problem().
+  [[nodiscard]] std::optional<RecordPlace> next();
+  /// The end of the last whole record.
+  [[nodiscard]] std::uint64_t position() const { return position_; }
+  /// Where and why the walk stopped before its end, as "byte 12: ..."; empty when it did not.
+  [[nodiscard]] const std::string& problem() const { return problem_; }
+
+ private:
+  const InputFile& file_;
+  std::uint64_t position_;
+  std::uint64_t end_;
+  std::string problem_;
+  Buffer storage_;
+  std::span<std::byte> window_;  // read ahead, as heads outside of chunks lie close together
+  std::uint64_t window_begin_ = 0;
+  std::uint64_t window_end_ = 0;
+};
+
+/// Reads a record's body; FormatError above the limit of the options.
+[[nodiscard]] ByteView readBody(const InputFile& file, const RecordPlace& place, const ReaderOptions& options,
+                                Buffer& storage);
+
+/// decode(body) of a record's body; a FormatError of it gets the record's place added.
+template <class Decode>
+auto decodeRecord(const InputFile& file, const RecordPlace& place, const ReaderOptions& options, Decode decode) {
+  Buffer storage;
+  const ByteView body = readBody(file, place, options, storage);
+  try {
+    return decode(body);
+  } catch (const FormatError& error) {
+    throw FormatError(file.path().string() + ": " + opcodeName(place.opcode) + " at byte " +
+                      std::to_string(place.offset) + ": " + error.what());
+  }
+}
+
+}  // namespace baton::mcap

@@ -1,0 +1,82 @@
+#include "mcap/reader.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "mcap/crc.hpp"
+
+namespace baton::mcap {
+namespace {
+
+/// The record an index points at, checked to be what the index says.
+RecordPlace placeOf(const InputFile& file, Opcode opcode, std::uint64_t offset, std::uint64_t length) {
+  std::optional<RecordPlace> place;
+  if (offset <= file.size() && length <= file.size() - offset) place = RecordWalk(file, offset, offset + length).next();
+  if (!place || place->opcode != opcode || place->length() != length) {
+    throw FormatError(file.path().string() + ": the index gives byte " + std::to_string(offset) + " for a record " +
+                      opcodeName(opcode) + " that is not there");
+  }
+  return *place;
+}
+
+}  // namespace
+
+Reader::Reader(const std::filesystem::path& path, ReaderOptions options)
+    : options_(std::move(options)), file_(path), index_(indexFile(file_, options_)) {}
+
+Bytes Reader::readAttachment(const AttachmentIndex& attachment) const {
+  const RecordPlace place = placeOf(file_, Opcode::kAttachment, attachment.offset, attachment.length);
+  // Asked for by name, so the file's size is limit enough.
+  ReaderOptions options = options_;
+  options.max_chunk_bytes = file_.size();
+  return decodeRecord(file_, place, options, [&](ByteView body) {
+    const AttachmentHead head = decodeAttachmentHead(body);
+    ByteReader in(body.subspan(static_cast<std::size_t>(head.data_offset)));
+    const ByteView data = in.bytes(head.data_size);
+    const ByteView covered = body.first(body.size() - in.rest().size());
+    const auto crc = in.number<std::uint32_t>();
+    if (options_.check_crc && crc != 0 && crc32(covered) != crc) throw FormatError("its CRC is wrong: it is damaged");
+    return Bytes(data.begin(), data.end());
+  });
+}
+
+std::vector<Metadata> Reader::metadata() const {
+  std::vector<Metadata> all;
+  all.reserve(index_.metadata.size());
+  for (const MetadataIndex& index : index_.metadata) {
+    const RecordPlace place = placeOf(file_, Opcode::kMetadata, index.offset, index.length);
+    all.push_back(decodeRecord(file_, place, options_, decodeMetadata));
+  }
+  return all;
+}
+
+MessageCursor Reader::messages(const MessageFilter& filter) const {
+  return MessageCursor(file_, index_, options_, filter);
+}
+
+void Reader::forEachMessage(const MessageFilter& filter,
+                            const std::function<void(const MessageView&)>& callback) const {
+  MessageCursor cursor = messages(filter);
+  for (MessageView message; cursor.next(message);) callback(message);
+}
+
+bool Reader::dataCrcMatches() const {
+  constexpr std::uint64_t kBlockBytes = 1 << 20;
+  RecordWalk walk(file_, kMagic.size(), file_.size());
+  std::optional<RecordPlace> place = walk.next();
+  while (place && place->opcode != Opcode::kDataEnd) place = walk.next();
+  if (!place) return false;
+  const DataEnd data_end = decodeRecord(file_, *place, options_, decodeDataEnd);
+  if (data_end.data_crc == 0) return true;
+  Buffer storage;
+  std::uint32_t crc = 0;
+  for (std::uint64_t offset = 0; offset < place->offset; offset += kBlockBytes) {
+    const std::span<std::byte> block =
+        storage.resize(static_cast<std::size_t>(std::min(kBlockBytes, place->offset - offset)));
+    file_.read(offset, block);
+    crc = crc32(block, crc);
+  }
+  return crc == data_end.data_crc;
+}
+
+}  // namespace baton::mcap

@@ -1,0 +1,57 @@
+/// Reads a recording: finished, cut off by a crash or a full disk, or written by somebody else.
+///
+/// Nothing in the file is believed before it is checked: lengths against the bytes that are there, sizes against a
+/// limit, contents against their CRCs. The only memory used for messages is that of the chunks being read.
+///
+///   const mcap::Reader reader("run.mcap");
+///   mcap::MessageCursor messages = reader.messages({.topics = {"baton/plant_state"}});
+///   for (mcap::MessageView message; messages.next(message);) use(message.data);
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mcap/cursor.hpp"
+
+namespace baton::mcap {
+
+class Reader {
+ public:
+  /// Throws UnavailableError when the file cannot be opened, FormatError when it is not MCAP, and, where it has no
+  /// trustworthy summary and is read from its start, at the first damaged chunk (see ReaderOptions::on_damage).
+  explicit Reader(const std::filesystem::path& path, ReaderOptions options = {});
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+  /// Whether the file is complete, and if not where it was cut and why.
+  [[nodiscard]] const FileInfo& info() const { return index_.info; }
+  [[nodiscard]] const std::map<SchemaId, Schema>& schemas() const { return index_.schemas; }
+  [[nodiscard]] const std::map<ChannelId, Channel>& channels() const { return index_.channels; }
+  /// Counts in all and per channel, first and last log time; of what is readable, when the file was cut.
+  [[nodiscard]] const Statistics& statistics() const { return index_.statistics; }
+  [[nodiscard]] const std::vector<AttachmentIndex>& attachments() const { return index_.attachments; }
+  /// An attachment's data. Throws FormatError when its CRC or its lengths are wrong.
+  /// @param attachment  one of attachments().
+  [[nodiscard]] Bytes readAttachment(const AttachmentIndex& attachment) const;
+  /// All metadata records, in file order, read now. Throws FormatError when one is damaged.
+  [[nodiscard]] std::vector<Metadata> metadata() const;
+
+  /// The messages that pass the filter, to be taken one by one.
+  [[nodiscard]] MessageCursor messages(const MessageFilter& filter = {}) const;
+  /// The same, each given to the callback.
+  void forEachMessage(const MessageFilter& filter, const std::function<void(const MessageView&)>& callback) const;
+
+  /// Reads the whole data section and compares it with the CRC at its end. True also when the file has no such CRC;
+  /// false when it differs or when the file was cut before it.
+  [[nodiscard]] bool dataCrcMatches() const;
+
+ private:
+  ReaderOptions options_;
+  InputFile file_;
+  FileIndex index_;
+};
+
+}  // namespace baton::mcap

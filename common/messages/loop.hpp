@@ -1,0 +1,43 @@
+/// The loop's signals to messages and back. Reading checks what arrived: a sample of the wrong size or with a number
+/// that is not finite is refused, so nothing of the kind reaches a law or the integrator. Writing into a reused message
+/// does not allocate once its sequences have held kMaxJoints entries: see prepare().
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "base/signals.hpp"
+#include "msg/loop.h"
+
+namespace baton {
+
+/// Which step a message belongs to.
+struct StepStamp {
+  std::uint64_t step = 0;
+  std::int64_t time_ns = 0;  // simulated
+};
+
+/// Sets memory aside in a message's sequences, once.
+void prepare(msg::PlantState& message);
+void prepare(msg::Reference& message);
+void prepare(msg::JointCommand& message);
+
+void toMessage(const StepStamp& stamp, const RobotState& state, const std::string& holder, std::uint64_t chain_hash,
+               msg::PlantState& message);
+void toMessage(const StepStamp& stamp, const Contact& contact, msg::Contact& message);
+void toMessage(const StepStamp& stamp, const Reference& reference, msg::Reference& message);
+void toMessage(const StepStamp& stamp, const std::string& controller, const JointVector& effort,
+               std::uint64_t inputs_hash, msg::JointCommand& message);
+
+/// All return false, leaving the signal in some valid state, when the message does not describe one of a robot with n
+/// joints.
+[[nodiscard]] bool fromMessage(const msg::PlantState& message, int n, RobotState& state);
+[[nodiscard]] bool fromMessage(const msg::Contact& message, Contact& contact);
+[[nodiscard]] bool fromMessage(const msg::Reference& message, int n, Reference& reference);
+[[nodiscard]] bool fromMessage(const msg::JointCommand& message, int n, JointVector& effort);
+
+/// A joint vector to a bounded sequence and back.
+void assignSequence(const JointVector& from, std::vector<double>& to);
+[[nodiscard]] bool readSequence(const std::vector<double>& from, int n, JointVector& to);
+
+}  // namespace baton

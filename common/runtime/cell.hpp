@@ -1,0 +1,50 @@
+/// Who uses a cell on this machine. A cell is one robot with its parts; the supervisor of its run holds a lock on it,
+/// which the kernel lets go when the process ends, however it ends. Beside the lock stands what others need to reach
+/// the run.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dds/types.hpp"
+
+namespace baton {
+
+struct RunInfo {
+  std::string cell;
+  std::string run;
+  int domain = 0;
+  dds::Transport transport = dds::Transport::kUdp;
+  std::string scenario;   // its file
+  std::string folder;     // logs, result
+  std::string recording;  // empty: none
+  int supervisor_pid = 0;
+};
+
+/// Held by the supervisor for as long as its run lives.
+class CellLock {
+ public:
+  /// Takes the cell and writes `info` beside the lock. Throws UnavailableError, naming the run that holds it and how to
+  /// end it, when the cell is taken.
+  explicit CellLock(const RunInfo& info);
+  ~CellLock();
+  CellLock(const CellLock&) = delete;
+  CellLock& operator=(const CellLock&) = delete;
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+};
+
+/// The run that holds a cell now, if any.
+[[nodiscard]] std::optional<RunInfo> activeRun(int domain, const std::string& cell);
+
+/// All runs alive on this machine.
+[[nodiscard]] std::vector<RunInfo> activeRuns();
+
+/// The folder of a run; created when missing.
+[[nodiscard]] std::filesystem::path runFolder(const std::string& run);
+
+}  // namespace baton

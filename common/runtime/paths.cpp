@@ -1,0 +1,83 @@
+#include "runtime/paths.hpp"
+
+#include <spdlog/fmt/chrono.h>
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "base/error.hpp"
+
+namespace baton {
+namespace fs = std::filesystem;
+
+fs::path stateFolder() {
+  const auto variable = [](const char* name) -> std::string {
+    const char* value = std::getenv(name);
+    return value == nullptr ? "" : value;
+  };
+  fs::path folder;
+  if (const std::string home = variable("BATON_HOME"); !home.empty()) {
+    folder = home;
+  } else if (const std::string state = variable("XDG_STATE_HOME"); !state.empty()) {
+    folder = fs::path(state) / "baton";
+  } else if (const std::string user = variable("HOME"); !user.empty()) {
+    folder = fs::path(user) / ".local/state/baton";
+  } else {
+    throw UnavailableError("no folder for runs: expected BATON_HOME, XDG_STATE_HOME or HOME to be set; set BATON_HOME");
+  }
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw UnavailableError("cannot make the folder of runs " + folder.string() + ": " + error.message() +
+                           "; set BATON_HOME to a folder you may write to");
+  }
+  return fs::absolute(folder);
+}
+
+fs::path programFolder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
+
+fs::path siblingProgram(const std::string& name) {
+  const fs::path path = programFolder() / name;
+  if (access(path.c_str(), X_OK) != 0) {
+    throw UnavailableError("the program " + path.string() + " is missing: build or install Baton again");
+  }
+  return path;
+}
+
+fs::path dataFolder() {
+  const fs::path folder = programFolder().parent_path() / "share/baton";
+  if (fs::exists(folder / "scenarios")) return folder;
+  throw UnavailableError("expected Baton's scenarios and robots in " + folder.string() +
+                         ", found nothing: build or install Baton again, or give whole paths");
+}
+
+fs::path findScenario(const std::string& name) {
+  if (fs::is_regular_file(name)) return fs::absolute(name);
+  const fs::path folder = dataFolder() / "scenarios";
+  if (const fs::path known = folder / (name + ".yaml"); fs::is_regular_file(known)) return known;
+  std::string names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".yaml") names += (names.empty() ? "" : ", ") + entry.path().stem().string();
+  }
+  throw UsageError("scenario " + name + ": expected a file or one of " + names + ", found neither");
+}
+
+std::string newRunId() {
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  return fmt::format("{:%Y%m%d-%H%M%S}-{:04x}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)),
+                     std::random_device{}() & 0xFFFFU);
+}
+
+std::string readFile(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf())) throw UnavailableError("cannot read " + path.string());
+  return text.str();
+}
+
+}  // namespace baton

@@ -1,0 +1,32 @@
+/// Where things are on this machine: programs, data and the folder of runs.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace baton {
+
+/// $BATON_HOME, else $XDG_STATE_HOME/baton, else ~/.local/state/baton. Created when missing.
+/// Throws UnavailableError when none of the variables is set or the folder cannot be made.
+[[nodiscard]] std::filesystem::path stateFolder();
+
+/// The folder this program's executable is in; Baton's programs stand side by side.
+[[nodiscard]] std::filesystem::path programFolder();
+
+/// A sibling program such as "baton-plant". Throws UnavailableError when it is not there.
+[[nodiscard]] std::filesystem::path siblingProgram(const std::string& name);
+
+/// The folder of scenarios/ and robots/: share/baton beside the programs' folder, in an installation as in a build.
+[[nodiscard]] std::filesystem::path dataFolder();
+
+/// A scenario as a person names it: a path, or the bare name of one in dataFolder()/scenarios. Throws UsageError
+/// listing what there is.
+[[nodiscard]] std::filesystem::path findScenario(const std::string& name);
+
+/// "20261122-031512-4f2a": sorts by time, newer runs after older ones.
+[[nodiscard]] std::string newRunId();
+
+/// The whole of a file. Throws UnavailableError when it cannot be read.
+[[nodiscard]] std::string readFile(const std::filesystem::path& path);
+
+}  // namespace baton

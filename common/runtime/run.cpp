@@ -1,0 +1,42 @@
+#include "runtime/run.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <csignal>
+#include <iostream>
+
+#include "runtime/log.hpp"
+#include "runtime/signals.hpp"
+
+namespace baton {
+
+int runGuarded(const std::string& name, const std::function<ExitCode()>& body) {
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    return static_cast<int>(body());
+  } catch (const Error& error) {
+    std::cerr << name << ": " << error.what() << '\n';
+    return static_cast<int>(error.code());
+  } catch (const std::exception& error) {
+    std::cerr << name << ": unexpected: " << error.what() << '\n';
+    return static_cast<int>(ExitCode::kFailed);
+  }
+}
+
+int runService(int argc, char** argv, const std::string& role, const std::function<ExitCode(Service&)>& body) {
+  return runGuarded("baton-" + role, [&] {
+    const HeldSignals held;
+    ServiceOptions options;
+    if (!parseServiceOptions(argc, argv, role, options)) return ExitCode::kOk;
+    setUpLog(options.name);
+    Scenario scenario = loadScenario(options.scenario_file);
+    scenario.recording.enabled = scenario.recording.enabled && options.recording;
+    Service service(options, std::move(scenario));
+    held.release();
+    const ExitCode code = body(service);
+    spdlog::info("stopped exit_code={}", static_cast<int>(code));
+    return code;
+  });
+}
+
+}  // namespace baton

@@ -1,0 +1,93 @@
+/// A whole experiment as a plain struct: what a scenario file says, checked. scenario_file.cpp reads it, README.md
+/// documents the file. Every service of a run reads the same file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "control/parameters.hpp"
+#include "environment/plane.hpp"
+#include "robot/model.hpp"
+#include "trajectory/trajectory.hpp"
+
+namespace baton {
+
+enum class SimMode { kLockstep, kRealtime };
+
+/// What the plant does about a step that does not end.
+enum class LatePolicy { kWait, kFallback, kAbort };
+
+struct ControllerConfig {
+  std::string name;  // unique in the scenario
+  std::string law;
+  ParameterValues parameters;  // complete and checked
+};
+
+struct PlannedSwap {
+  std::uint64_t at_step = 0;
+  std::string to;
+};
+
+struct BatonConfig {
+  std::uint64_t margin_steps = 5;     // steps between the decision and the swap
+  std::uint64_t blend_steps = 200;    // over which the difference between the two torques fades
+  double max_effort_step = 50.0;      // forecast above this is refused, any joint [N m or N]
+  std::vector<std::string> fallback;  // who takes over from a holder that fails, in order; then the brake
+};
+
+struct RecordingConfig {
+  bool enabled = true;
+  std::string compression = "zstd";  // none, lz4, zstd
+  std::uint64_t credit_steps = 256;  // lockstep: how far the plant may run past the recorder
+};
+
+struct Scenario {
+  std::string file;        // absolute path it was read from
+  std::string text;        // the file, as it was
+  std::string robot_file;  // absolute path
+  std::string robot_text;
+  std::string name;
+  std::string description;
+  RobotModel robot;
+  std::int64_t step_ns = 1'000'000;
+  int substeps = 1;
+  std::uint64_t end_step = 0;  // 0: until stopped
+  SimMode mode = SimMode::kLockstep;
+  double rate = 0.0;                    // simulated seconds per second, 0 for as fast as possible; 1 in realtime
+  std::uint64_t max_missed_steps = 20;  // realtime: steps an old torque may be kept before the brake
+  LatePolicy late_policy = LatePolicy::kAbort;
+  double late_after_s = 30.0;  // wall time
+  JointVector start_q;
+  JointVector start_qd;
+  std::vector<PlaneSpec> walls;  // none: no environment process
+  TrajectorySpec trajectory;
+  std::vector<ControllerConfig> controllers;
+  std::string active;       // who holds the baton at step 0
+  bool hot_standby = true;  // controllers standing by compute in shadow
+  std::vector<PlannedSwap> swaps;
+  BatonConfig baton;
+  RecordingConfig recording;
+  std::vector<std::string> warnings;  // what is odd but workable, with file and line
+
+  [[nodiscard]] double stepSeconds() const { return static_cast<double>(step_ns) * 1e-9; }
+  [[nodiscard]] bool hasEnvironment() const { return !walls.empty(); }
+  /// The controller called that; throws UsageError, with the nearest name, when there is none.
+  [[nodiscard]] const ControllerConfig& controller(const std::string& controller_name) const;
+};
+
+/// Reads and checks a scenario file and the robot file it names. Throws UsageError with file, line, what was expected
+/// and what was found.
+[[nodiscard]] Scenario loadScenario(const std::string& path);
+
+/// The same from text already in memory (a recording's attachments); `file` is used in messages, `robot_text` stands in
+/// for the robot file.
+[[nodiscard]] Scenario parseScenario(const std::string& file, const std::string& text, const std::string& robot_file,
+                                     const std::string& robot_text);
+
+/// Reads and checks a robot file; warnings are appended to `warnings` when it is given.
+[[nodiscard]] RobotModel loadRobot(const std::string& path, std::vector<std::string>* warnings = nullptr);
+[[nodiscard]] RobotModel parseRobot(const std::string& file, const std::string& text,
+                                    std::vector<std::string>* warnings = nullptr);
+
+}  // namespace baton

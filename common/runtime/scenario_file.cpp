@@ -1,0 +1,356 @@
+/// Scenario files: a whole experiment in YAML, as deploy/scenarios/demo.yaml documents it, to a checked Scenario.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <sstream>
+
+#include "base/error.hpp"
+#include "control/law.hpp"
+#include "control/nearest_name.hpp"
+#include "runtime/scenario.hpp"
+#include "runtime/yaml.hpp"
+
+namespace baton {
+namespace {
+
+constexpr double kMaxTime_s = 1e6;  // longer runs are open-ended
+constexpr std::size_t kMaxWaypoints = 10'000;
+constexpr std::size_t kMaxSwaps = 10'000;
+constexpr std::size_t kMaxControllers = 16;
+constexpr std::size_t kMaxWalls = 16;
+
+// Wide enough for any experiment, narrow enough to catch a slip of units or of a decimal point.
+const NumberRange kTime{0.0, kMaxTime_s, "s"};
+const NumberRange kJointPosition{-1e3, 1e3, "rad or m"};
+const NumberRange kJointVelocity{-1e4, 1e4, "rad/s or m/s"};
+const NumberRange kPoint{-1e3, 1e3, "m"};
+const NumberRange kDirection{-1e6, 1e6, ""};
+const NumberRange kStiffness{0.0, 1e9, "N/m"};
+const NumberRange kDamping{0.0, 1e7, "N s/m"};
+const NumberRange kForce{-1e6, 1e6, "N"};
+const NumberRange kMoment{-1e6, 1e6, "N m"};
+
+/// Runs `read`; what it finds wrong is said to be at `node`.
+template <typename Read>
+decltype(auto) at(const YamlNode& node, const Read& read) {
+  try {
+    return read();
+  } catch (const UsageError& error) {
+    throw UsageError(node.place() + error.what());
+  }
+}
+
+JointVector readJoints(const YamlNode& node, const NumberRange& range, int n) {
+  const std::vector<double> values = node.numbers(static_cast<std::size_t>(n), range, "joint");
+  return Eigen::Map<const JointVector>(values.data(), n);
+}
+
+// --- time
+
+std::int64_t readStep(const YamlNode& node) {
+  const double ns = node.number({1e-6, 1.0, "s"}) * 1e9;
+  constexpr double kRounding_ns = 1e-3;
+  if (std::abs(ns - std::round(ns)) > kRounding_ns) node.refuse("a whole number of nanoseconds");
+  return std::llround(ns);
+}
+
+/// A time as a count of steps. One that falls between two steps is refused rather than moved.
+std::uint64_t readSteps(const YamlNode& node, const Scenario& scenario) {
+  const double ns = node.number(kTime) * 1e9;
+  const auto step_ns = static_cast<double>(scenario.step_ns);
+  const double steps = std::round(ns / step_ns);
+  constexpr double kRounding_ns = 0.5;            // a double of up to kMaxTime_s is finer
+  const bool is_lost = steps == 0.0 && ns > 0.0;  // 0 has a meaning of its own
+  if (is_lost || std::abs(ns - steps * step_ns) > kRounding_ns) {
+    node.refuse("a whole number of steps of " + shownNumber(scenario.stepSeconds()) + " s (the nearest is " +
+                shownNumber(steps * step_ns * 1e-9) + ")");
+  }
+  return static_cast<std::uint64_t>(steps);
+}
+
+double readRate(const YamlMap& map, SimMode mode) {
+  const auto node = map.find("rate");
+  const bool is_max = node && node->isScalar() && node->text() == "max";
+  if (mode == SimMode::kRealtime) {
+    if (node && (is_max || node->number() != 1.0)) node->refuse("1, the only rate of mode realtime");
+    return 1.0;
+  }
+  return !node || is_max ? 0.0 : node->number({0.0, 1000.0, "times real time, or max", true});
+}
+
+void readTime(const YamlMap& map, Scenario& scenario) {
+  scenario.step_ns = readStep(map["step_s"]);
+  scenario.substeps = static_cast<int>(map.integerOr("substeps", 1, 1000, scenario.substeps));
+  if (const auto duration = map.find("duration_s")) scenario.end_step = readSteps(*duration, scenario);
+  if (const auto mode = map.find("mode")) {
+    scenario.mode = mode->oneOf<SimMode>({{"lockstep", SimMode::kLockstep}, {"realtime", SimMode::kRealtime}});
+  }
+  scenario.rate = readRate(map, scenario.mode);
+  scenario.max_missed_steps = static_cast<std::uint64_t>(map.integerOr("max_missed_steps", 0, 1'000'000, 20));
+  if (const auto node = map.find("late")) {
+    const YamlMap late = node->map({"policy", "after_s"});
+    if (const auto policy = late.find("policy")) {
+      scenario.late_policy = policy->oneOf<LatePolicy>(
+          {{"wait", LatePolicy::kWait}, {"fallback", LatePolicy::kFallback}, {"abort", LatePolicy::kAbort}});
+    }
+    scenario.late_after_s = late.numberOr("after_s", {0.0, 86400.0, "s", true}, scenario.late_after_s);
+  }
+}
+
+// --- the world
+
+void readStart(const YamlMap& map, Scenario& scenario) {
+  const int n = scenario.robot.size();
+  scenario.start_q = JointVector::Zero(n);
+  scenario.start_qd = JointVector::Zero(n);
+  const auto node = map.find("start");
+  if (!node) return;
+  const YamlMap start = node->map({"position", "velocity"});
+  if (const auto position = start.find("position")) scenario.start_q = readJoints(*position, kJointPosition, n);
+  if (const auto velocity = start.find("velocity")) scenario.start_qd = readJoints(*velocity, kJointVelocity, n);
+}
+
+PlaneSpec readWall(const YamlNode& node) {
+  const YamlMap wall = node.map({"point_m", "normal", "stiffness_N_per_m", "damping_N_s_per_m"});
+  PlaneSpec plane;
+  plane.point_m = wall["point_m"].vector3(kPoint);
+  plane.normal = wall["normal"].vector3(kDirection);
+  constexpr double kShortest = 1e-6;  // below, its direction is rounding
+  if (plane.normal.norm() < kShortest) wall["normal"].fail("expected a direction, found a vector of length 0");
+  plane.stiffness_N_per_m = wall["stiffness_N_per_m"].number(kStiffness);
+  plane.damping_N_s_per_m = wall.numberOr("damping_N_s_per_m", kDamping, 0.0);
+  return plane;
+}
+
+void readEnvironment(const YamlMap& map, Scenario& scenario) {
+  const auto node = map.find("environment");
+  if (!node) return;
+  for (const YamlNode& wall : node->map({"walls"})["walls"].list(1, kMaxWalls)) {
+    scenario.walls.push_back(readWall(wall));
+  }
+}
+
+TrajectorySpec readTrajectory(const YamlNode& node, int n) {
+  const YamlMap map = node.map({"interpolation", "waypoints", "force_N", "moment_Nm"});
+  TrajectorySpec trajectory;
+  if (const auto word = map.find("interpolation")) {
+    trajectory.interpolation =
+        word->oneOf<Interpolation>({{"quintic", Interpolation::kQuintic}, {"cubic", Interpolation::kCubic}});
+  }
+  for (const YamlNode& item : map["waypoints"].list(1, kMaxWaypoints)) {
+    const YamlMap waypoint = item.map({"time_s", "position"});
+    const double time_s = waypoint["time_s"].number(kTime);
+    if (!trajectory.waypoints.empty() && time_s <= trajectory.waypoints.back().time_s) {
+      waypoint["time_s"].refuse("a time after the waypoint before, " + shownNumber(trajectory.waypoints.back().time_s) +
+                                " s");
+    }
+    trajectory.waypoints.push_back({time_s, readJoints(waypoint["position"], kJointPosition, n)});
+  }
+  if (const auto force = map.find("force_N")) trajectory.h_d.head<3>() = force->vector3(kForce);
+  if (const auto moment = map.find("moment_Nm")) trajectory.h_d.tail<3>() = moment->vector3(kMoment);
+  return trajectory;
+}
+
+// --- controllers
+
+ParameterValue readParameter(const YamlNode& node, bool is_choice) {
+  if (is_choice) return node.text();
+  if (!node.isList()) return std::vector<double>{node.number()};
+  std::vector<double> values;
+  for (const YamlNode& item : node.list(0, 64)) values.push_back(item.number());
+  return values;
+}
+
+/// Each parameter is checked by itself first, so that a message can name its line.
+ParameterValues readParameters(const YamlNode& node, const LawInfo& law, int n) {
+  ParameterValues given;
+  for (const auto& [name, value] : node.entries()) {
+    const auto is_named = [&name = name](const ParameterSpec& spec) { return spec.name == name; };
+    const auto spec = std::find_if(law.parameters.begin(), law.parameters.end(), is_named);
+    const bool is_known = spec != law.parameters.end();
+    const ParameterValue read =
+        is_known ? readParameter(value, spec->size == ParameterSize::kChoice) : ParameterValue();
+    at(value, [&, &key = name] { (void)completeParameters(law.parameters, {{key, read}}, n); });
+    given[name] = read;
+  }
+  return completeParameters(law.parameters, given, n);
+}
+
+ControllerConfig readController(const YamlNode& node, const Scenario& scenario) {
+  const YamlMap map = node.map({"name", "law", "parameters"});
+  ControllerConfig controller;
+  controller.name = map["name"].name();
+  // The other services of a run go by these names.
+  static const std::vector<std::string> kTaken{"plant",    "environment", "trajectory",
+                                               "recorder", "replayer",    "supervisor"};
+  if (std::find(kTaken.begin(), kTaken.end(), controller.name) != kTaken.end()) {
+    map["name"].refuse("a name that is not that of another service of the run");
+  }
+  for (const ControllerConfig& other : scenario.controllers) {
+    if (other.name == controller.name) map["name"].refuse("a name that no other controller of the scenario has");
+  }
+
+  controller.law = map["law"].text();
+  const LawInfo& law = at(map["law"], [&]() -> const LawInfo& { return findLaw(controller.law); });
+  if (law.uses_force && !scenario.hasEnvironment()) {
+    map["law"].fail("expected an environment, because law " + law.name +
+                    " uses force, found none; for free motion give a wall of stiffness 0");
+  }
+  const auto parameters = map.find("parameters");
+  if (parameters) controller.parameters = readParameters(*parameters, law, scenario.robot.size());
+  // A law may refuse a robot, or parameters that do not go together.
+  at(parameters.value_or(node), [&] { (void)makeLaw(law.name, scenario.robot, controller.parameters); });
+  controller.parameters = completeParameters(law.parameters, controller.parameters, scenario.robot.size());
+  return controller;
+}
+
+/// The name of a controller of this scenario.
+std::string readMember(const YamlNode& node, const Scenario& scenario) {
+  const std::string name = node.text();
+  at(node, [&] { (void)scenario.controller(name); });
+  return name;
+}
+
+// --- handing over the baton
+
+void readBaton(const YamlMap& map, Scenario& scenario) {
+  double blend_s = 0.1;
+  if (const auto node = map.find("baton")) {
+    const YamlMap baton = node->map({"margin_steps", "blend_s", "max_effort_step", "fallback"});
+    BatonConfig& config = scenario.baton;
+    config.margin_steps = static_cast<std::uint64_t>(baton.integerOr("margin_steps", 1, 1000, 5));
+    config.max_effort_step =
+        baton.numberOr("max_effort_step", {0.0, 1e9, "N m or N", true}, scenario.baton.max_effort_step);
+    blend_s = baton.numberOr("blend_s", {0.0, 10.0, "s"}, blend_s);
+    if (const auto fallback = baton.find("fallback")) {
+      for (const YamlNode& item : fallback->list(0, kMaxControllers)) {
+        const std::string name = readMember(item, scenario);
+        if (std::find(config.fallback.begin(), config.fallback.end(), name) != config.fallback.end()) {
+          item.refuse("each controller once");
+        }
+        config.fallback.push_back(name);
+      }
+    }
+  }
+  // The length of a fade is not an instant of the run: the nearest whole number of steps will do.
+  scenario.baton.blend_steps = static_cast<std::uint64_t>(std::llround(blend_s / scenario.stepSeconds()));
+}
+
+void readSwaps(const YamlMap& map, Scenario& scenario) {
+  const auto node = map.find("swaps");
+  if (!node) return;
+  const BatonConfig& baton = scenario.baton;
+  const std::uint64_t apart = std::max(2 * baton.margin_steps + 3, baton.blend_steps);
+  const auto in_words = [&](std::uint64_t step) {
+    return "step " + std::to_string(step) + " (" + shownNumber(static_cast<double>(step) * scenario.stepSeconds()) +
+           " s)";
+  };
+  std::string holder = scenario.active;
+  for (const YamlNode& item : node->list(0, kMaxSwaps)) {
+    const YamlMap map_of_swap = item.map({"at_s", "to"});
+    const YamlNode at_s = map_of_swap["at_s"];
+    const PlannedSwap swap{readSteps(at_s, scenario), readMember(map_of_swap["to"], scenario)};
+    if (scenario.swaps.empty()) {
+      const std::uint64_t earliest = baton.margin_steps + 2;
+      if (swap.at_step < earliest) at_s.refuse("a time not before " + in_words(earliest) + ", margin_steps + 2");
+    } else if (const std::uint64_t before = scenario.swaps.back().at_step; swap.at_step < before + apart) {
+      at_s.refuse("a time not before " + in_words(before + apart) +
+                  ": the swap before must be over, which takes its blend and more than 2 margin_steps + 2");
+    }
+    if (scenario.end_step > 0 && swap.at_step >= scenario.end_step) {
+      at_s.refuse("a time before the end of the run, " + in_words(scenario.end_step));
+    }
+    if (swap.to == holder) map_of_swap["to"].refuse("a controller that does not hold the baton already");
+    holder = swap.to;
+    scenario.swaps.push_back(swap);
+  }
+}
+
+RecordingConfig readRecording(const YamlMap& map) {
+  RecordingConfig recording;
+  const auto node = map.find("recording");
+  if (!node) return recording;
+  const YamlMap given = node->map({"enabled", "compression", "credit_steps"});
+  recording.enabled = given.booleanOr("enabled", recording.enabled);
+  if (const auto word = given.find("compression")) {
+    recording.compression = word->oneOf<std::string>({{"none", "none"}, {"lz4", "lz4"}, {"zstd", "zstd"}});
+  }
+  recording.credit_steps = static_cast<std::uint64_t>(given.integerOr("credit_steps", 16, 512, 256));
+  return recording;
+}
+
+// --- the whole
+
+struct RobotFile {
+  std::string shown_as;  // in messages
+  std::string path;
+  std::string text;
+};
+
+/// @param robot_file  finds the robot file that the node names.
+Scenario readScenario(const std::string& file, const std::string& text,
+                      const std::function<RobotFile(const YamlNode&)>& robot_file) {
+  const YamlMap map = YamlNode::parse(file, text)
+                          .map({"name", "description", "robot", "step_s", "substeps", "duration_s", "mode", "rate",
+                                "late", "max_missed_steps", "start", "environment", "trajectory", "controllers",
+                                "active", "standby", "swaps", "baton", "recording"});
+  Scenario scenario;
+  scenario.file = file;
+  scenario.text = text;
+  scenario.name = map["name"].name();
+  if (const auto description = map.find("description")) scenario.description = description->text(400);
+  const RobotFile robot = robot_file(map["robot"]);
+  scenario.robot_file = robot.path;
+  scenario.robot_text = robot.text;
+  scenario.robot = parseRobot(robot.shown_as, robot.text, &scenario.warnings);
+
+  readTime(map, scenario);
+  readStart(map, scenario);
+  readEnvironment(map, scenario);
+  scenario.trajectory = readTrajectory(map["trajectory"], scenario.robot.size());
+  for (const YamlNode& controller : map["controllers"].list(1, kMaxControllers)) {
+    scenario.controllers.push_back(readController(controller, scenario));
+  }
+  scenario.active = readMember(map["active"], scenario);
+  if (const auto standby = map.find("standby")) {
+    scenario.hot_standby = standby->oneOf<bool>({{"hot", true}, {"cold", false}});
+  }
+  readBaton(map, scenario);
+  readSwaps(map, scenario);
+  scenario.recording = readRecording(map);
+  return scenario;
+}
+
+}  // namespace
+
+const ControllerConfig& Scenario::controller(const std::string& controller_name) const {
+  std::vector<std::string> known;
+  for (const ControllerConfig& one : controllers) {
+    if (one.name == controller_name) return one;
+    known.push_back(one.name);
+  }
+  throw UsageError(unknownName("controller", controller_name, known));
+}
+
+Scenario loadScenario(const std::string& path) {
+  namespace fs = std::filesystem;
+  Scenario scenario = readScenario(path, readYamlFile(path), [&](const YamlNode& node) -> RobotFile {
+    const fs::path robot = (fs::path(path).parent_path() / node.text()).lexically_normal();
+    return at(node, [&] {
+      return RobotFile{robot.string(), fs::absolute(robot).lexically_normal().string(), readYamlFile(robot.string())};
+    });
+  });
+  scenario.file = fs::absolute(path).lexically_normal().string();
+  return scenario;
+}
+
+Scenario parseScenario(const std::string& file, const std::string& text, const std::string& robot_file,
+                       const std::string& robot_text) {
+  return readScenario(file, text, [&](const YamlNode& node) -> RobotFile {
+    (void)node.text();
+    return {robot_file, robot_file, robot_text};
+  });
+}
+
+}  // namespace baton

@@ -1,0 +1,180 @@
+#include "runtime/service.hpp"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/asio/steady_timer.hpp>
+
+namespace baton {
+namespace asio = boost::asio;
+
+Service::Service(ServiceOptions options, Scenario scenario)
+    : options_(std::move(options)),
+      scenario_(std::move(scenario)),
+      // A peer's discovery data may come after its endpoints are matched.
+      participant_(options_.participant(),
+                   [this](const dds::Peer& peer) { asio::post(executor_, [this, peer] { peerJoined(peer); }); }) {
+  status_ = &output(dds::topics::kServiceStatus);
+  events_ = &output(dds::topics::kEvent);
+  manifest_ = &output(dds::topics::kServiceManifest);
+  if (options_.role != kPlantName) {
+    input(dds::topics::kSimStatus, {kPlantName}, [this](const msg::SimStatus& status, const dds::RawSample&) {
+      const bool finished = status.state() == msg::SIM_STATE_FINISHED;
+      if (finished || status.state() == msg::SIM_STATE_ABORTED) runEnded(status.step(), finished);
+    });
+  }
+}
+
+Service::~Service() {
+  while (!endpoints_.empty()) endpoints_.pop_back();
+}
+
+StepStamp Service::stampOf(std::uint64_t step) const {
+  return {step, static_cast<std::int64_t>(step) * scenario_.step_ns};
+}
+
+void Service::require(const std::string& topic, std::function<std::set<dds::GuidPrefix>()> matched,
+                      std::vector<std::string> peers) {
+  barrier_.require(topic, std::move(matched), std::move(peers));
+}
+
+void Service::addToManifest(dds::Profile profile, std::function<msg::StreamManifest()> manifest) {
+  // A status is only ever its latest word: what it replaced is not missing from a recording.
+  if (profile != dds::Profile::kStatus) manifests_.push_back(std::move(manifest));
+}
+
+void Service::peerJoined(const dds::Peer& peer) {
+  checkBarrier();
+  if (peer.cell != options_.cell || peer.service != options_.name) return;
+  // Another one of us. A run that has started is left alone, so it is the newcomer that gives way: the same run's
+  // second copy of a service, or the plant of a newer run in a cell that is taken.
+  std::string why;
+  if (peer.run == options_.run) {
+    why = "a second " + peer.service + " in run " + peer.run;
+  } else if (options_.role == kPlantName && peer.run < options_.run) {
+    why = "cell " + peer.cell + " has a plant of run " + peer.run + " already: end that run or choose another --cell";
+  }
+  if (why.empty()) return;
+  if (ready_) {
+    event(msg::SEVERITY_WARNING, "intruder", why + "; this one goes on");
+  } else {
+    // Nothing is published: the name is the other one's, who must not be taken for failed.
+    spdlog::error("{}; this one stops", why);
+    stop(ExitCode::kUnavailable);
+  }
+}
+
+void Service::matchesChanged() {
+  asio::post(executor_, [this] { checkBarrier(); });
+}
+
+void Service::checkBarrier() {
+  if (ready_) return;
+  const std::string missing = barrier_.missing();
+  ready_ = missing.empty();
+  publishStatus(ready_ ? msg::SERVICE_READY : msg::SERVICE_STARTING, ready_ ? "" : "waits for " + missing);
+  if (!ready_) return;
+  spdlog::info("ready");
+  if (on_ready_) on_ready_();
+}
+
+void Service::publishStatus(msg::ServiceState state, const std::string& text) {
+  msg::ServiceStatus status;
+  status.name(options_.name);
+  status.role(options_.role);
+  status.state(state);
+  status.pid(getpid());
+  status.text(text);
+  status_->write(status);
+}
+
+void Service::event(msg::Severity severity, const std::string& kind, const std::string& text) {
+  asio::post(executor_, [this, stamp = stampOf(step_), severity, kind, text] {
+    const auto level = severity == msg::SEVERITY_INFO      ? spdlog::level::info
+                       : severity == msg::SEVERITY_WARNING ? spdlog::level::warn
+                                                           : spdlog::level::err;
+    spdlog::log(level, "step={} sim_time_ns={} {}: {}", stamp.step, stamp.time_ns, kind, text);
+    msg::Event message;
+    message.step(stamp.step);
+    message.time_ns(stamp.time_ns);
+    message.severity(severity);
+    message.service(options_.name);
+    message.kind(kind);
+    message.text(text);
+    const std::lock_guard lock(mutex_);
+    if (!manifest_out_) events_->write(message);  // afterwards the recording is being closed; the log has it
+  });
+}
+
+void Service::stepDone(std::uint64_t step) {
+  last_done_ = std::max(last_done_.value_or(0), step);
+  if (end_step_ && step >= *end_step_) asio::post(executor_, [this] { publishManifest(); });
+}
+
+void Service::runEnded(std::uint64_t step, bool clean) {
+  if (end_step_) return;
+  end_step_ = step;
+  if (clean && answers_steps_ && !(last_done_ && *last_done_ >= step)) return;  // stepDone() will come
+  asio::post(executor_, [this] { publishManifest(); });
+}
+
+void Service::publishManifest() {
+  const std::lock_guard lock(mutex_);
+  if (manifest_out_) return;
+  manifest_out_ = true;
+  msg::ServiceManifest message;
+  message.name(options_.name);
+  for (const auto& manifest : manifests_) {
+    const msg::StreamManifest stream = manifest();
+    if (stream.count() > 0) message.streams().push_back(stream);
+  }
+  manifest_->write(message);
+  if (on_end_) asio::post(executor_, on_end_);
+}
+
+void Service::every(std::chrono::milliseconds period, std::function<void()> action) {
+  struct Repeater : std::enable_shared_from_this<Repeater> {
+    Repeater(asio::io_context& executor, std::chrono::milliseconds p, std::function<void()> a)
+        : timer(executor), period(p), action(std::move(a)) {}
+    void arm() {
+      timer.expires_after(period);
+      timer.async_wait([self = shared_from_this()](const boost::system::error_code& error) {
+        if (error) return;
+        self->action();
+        self->arm();
+      });
+    }
+    asio::steady_timer timer;
+    std::chrono::milliseconds period;
+    std::function<void()> action;
+  };
+  std::make_shared<Repeater>(executor_, period, std::move(action))->arm();
+}
+
+void Service::stop(ExitCode code) {
+  asio::post(executor_, [this, code] {
+    if (exit_code_ == ExitCode::kOk) exit_code_ = code;
+    executor_.stop();
+  });
+}
+
+void Service::awaitSignal() {
+  signals_.async_wait([this](const boost::system::error_code& error, int) {
+    if (error) return;
+    if (!on_signal_) return executor_.stop();
+    on_signal_();
+    awaitSignal();
+  });
+}
+
+ExitCode Service::run() {
+  awaitSignal();
+  matchesChanged();
+  executor_.run();
+  const std::lock_guard lock(mutex_);
+  is_closed_ = true;
+  return exit_code_;
+}
+
+}  // namespace baton

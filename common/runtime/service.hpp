@@ -1,0 +1,167 @@
+/// What every service of a run is made of: the DDS participant, endpoints, the start barrier, the executor, the end of
+/// the run. A service's own code declares its topics, reacts to samples and calls run().
+///
+/// Threads. Handlers given to input() run in DDS's receive thread, one at a time under mutex(): take, compute, write,
+/// and block on nothing else (waking another thread would cost 10 to 35 us a hop). Everything else, timers and handlers
+/// posted to executor(), runs in the thread that called run(); it takes mutex() when it touches what the handlers
+/// touch.
+#pragma once
+
+#include <atomic>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "dds/participant.hpp"
+#include "dds/typed.hpp"
+#include "messages/loop.hpp"
+#include "runtime/barrier.hpp"
+#include "runtime/scenario.hpp"
+#include "runtime/service_options.hpp"
+
+namespace baton {
+
+class Service {
+ public:
+  Service(ServiceOptions options, Scenario scenario);
+  ~Service();
+  Service(const Service&) = delete;
+  Service& operator=(const Service&) = delete;
+
+  /// A writer on `topic`; the service is not ready before every service in `readers` reads it.
+  template <class T>
+  dds::Writer<T>& output(const dds::Topic<T>& topic, const std::vector<std::string>& readers = {});
+
+  /// A reader on `topic`, likewise with `writers`. `handler(message, sample)` runs under mutex().
+  template <class T>
+  void input(const dds::Topic<T>& topic, const std::vector<std::string>& writers,
+             typename dds::Reader<T>::Callback handler);
+
+  /// Keeps something of the caller's own (the recorder's readers) in the barrier.
+  void require(const std::string& topic, std::function<std::set<dds::GuidPrefix>()> matched,
+               std::vector<std::string> peers);
+
+  /// Looks at the barrier again soon; any thread.
+  void matchesChanged();
+
+  /// Publishes an event and logs it, from the executor; any thread may ask.
+  void event(msg::Severity severity, const std::string& kind, const std::string& text);
+  /// Where the run is, for events.
+  void at(std::uint64_t step) { step_ = step; }
+  /// The service has answered this step for good; after the last one its manifest goes out. From handlers.
+  void stepDone(std::uint64_t step);
+  /// The run ended at `step`: from the plant itself, or from SimStatus for all others. `clean` when every service will
+  /// still answer that step. From handlers.
+  void runEnded(std::uint64_t step, bool clean);
+  /// The manifest is out: what is published from now on is not part of the run. From handlers.
+  [[nodiscard]] bool isOver() const { return manifest_out_; }
+  /// This service takes no part in the steps: at the end of the run nothing more is waited for.
+  void answersNoSteps() { answers_steps_ = false; }
+  /// Called once on the executor when the run has ended and this service's manifest is out.
+  void onEnd(std::function<void()> handler) { on_end_ = std::move(handler); }
+
+  /// Instead of ending run(), a signal calls this on the executor, each time.
+  void onSignal(std::function<void()> handler) { on_signal_ = std::move(handler); }
+
+  /// Repeats `action` on the executor until the service stops.
+  void every(std::chrono::milliseconds period, std::function<void()> action);
+  /// Ends run(); any thread.
+  void stop(ExitCode code = ExitCode::kOk);
+  /// Serves until stop() or a signal. Returns the exit code.
+  ExitCode run();
+
+  [[nodiscard]] const ServiceOptions& options() const { return options_; }
+  [[nodiscard]] const Scenario& scenario() const { return scenario_; }
+  [[nodiscard]] dds::Participant& participant() { return participant_; }
+  [[nodiscard]] boost::asio::io_context& executor() { return executor_; }
+  [[nodiscard]] std::mutex& mutex() { return mutex_; }
+  [[nodiscard]] StepStamp stampOf(std::uint64_t step) const;
+  /// Matched with everybody it needs; any thread.
+  [[nodiscard]] bool isReady() const { return ready_; }
+  /// Called once on the executor when the service becomes ready.
+  void onReady(std::function<void()> handler) { on_ready_ = std::move(handler); }
+
+ private:
+  void awaitSignal();
+  void peerJoined(const dds::Peer& peer);
+  void checkBarrier();
+  void publishManifest();
+  void publishStatus(msg::ServiceState state, const std::string& text);
+  void addToManifest(dds::Profile profile, std::function<msg::StreamManifest()> manifest);
+
+  ServiceOptions options_;
+  Scenario scenario_;
+  boost::asio::io_context executor_{1};
+  // From before the first to after the last thing that a signal could cut off.
+  boost::asio::signal_set signals_{executor_, SIGINT, SIGTERM};
+  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{executor_.get_executor()};
+  std::mutex mutex_;
+  dds::Participant participant_;
+  Barrier barrier_{participant_};
+  std::vector<std::shared_ptr<void>> endpoints_;  // destroyed before the participant, in reverse order of opening
+  std::vector<std::function<msg::StreamManifest()>> manifests_;
+  dds::Writer<msg::ServiceStatus>* status_ = nullptr;
+  dds::Writer<msg::Event>* events_ = nullptr;
+  dds::Writer<msg::ServiceManifest>* manifest_ = nullptr;
+  std::function<void()> on_end_;
+  std::function<void()> on_ready_;
+  std::function<void()> on_signal_;
+  std::atomic<std::uint64_t> step_{0};
+  bool answers_steps_ = true;
+  std::optional<std::uint64_t> last_done_;
+  std::optional<std::uint64_t> end_step_;
+  std::atomic<bool> ready_{false};
+  bool is_closed_ = false;     // guarded by mutex_: run() is over, and with it the life of what the handlers belong to
+  bool manifest_out_ = false;  // guarded by mutex_
+  ExitCode exit_code_ = ExitCode::kOk;
+};
+
+/// How a stream of a writer went, for the manifest.
+template <class T>
+[[nodiscard]] msg::StreamManifest manifestOf(const dds::Writer<T>& writer) {
+  msg::StreamManifest manifest;
+  manifest.topic(writer.topic());
+  manifest.writer(writer.raw().guid().bytes);
+  manifest.count(writer.raw().count());
+  manifest.first_sequence(writer.raw().count() > 0 ? 1 : 0);
+  manifest.last_sequence(writer.raw().count());
+  manifest.stream_hash(writer.streamHash());
+  return manifest;
+}
+
+template <class T>
+dds::Writer<T>& Service::output(const dds::Topic<T>& topic, const std::vector<std::string>& readers) {
+  auto writer = std::make_shared<dds::Writer<T>>(participant_, topic, [this] { matchesChanged(); });
+  require(
+      topic.name, [raw = &writer->raw()] { return raw->matched(); }, readers);
+  addToManifest(topic.profile, [raw = writer.get()] { return manifestOf(*raw); });
+  endpoints_.push_back(writer);
+  return *writer;
+}
+
+template <class T>
+void Service::input(const dds::Topic<T>& topic, const std::vector<std::string>& writers,
+                    typename dds::Reader<T>::Callback handler) {
+  auto reader = std::make_shared<dds::Reader<T>>(
+      participant_, topic,
+      [this, handler = std::move(handler)](const T& message, const dds::RawSample& sample) {
+        const std::lock_guard lock(mutex_);
+        if (!is_closed_) handler(message, sample);
+      },
+      [this] { matchesChanged(); });
+  require(
+      topic.name, [raw = &reader->raw()] { return raw->matched(); }, writers);
+  endpoints_.push_back(reader);
+}
+
+}  // namespace baton

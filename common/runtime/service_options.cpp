@@ -1,0 +1,97 @@
+#include "runtime/service_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cctype>
+
+#include "base/error.hpp"
+
+namespace baton {
+
+dds::ParticipantOptions ServiceOptions::participant() const {
+  return {.domain = domain,
+          .partition = cell + "/" + run,
+          .cell = cell,
+          .run = run,
+          .service = name,
+          .transport = transport};
+}
+
+bool parseServiceOptions(int argc, char** argv, const std::string& role, ServiceOptions& options) {
+  options.role = role;
+  options.name = role;
+  CLI::App app{"The " + role + " of a Baton run. The supervisor starts it; `baton up` starts the supervisor."};
+  app.add_option("--scenario", options.scenario_file, "scenario file, the whole experiment")->required();
+  app.add_option("--cell", options.cell, "cell: one robot with its parts")->check(cellName())->capture_default_str();
+  app.add_option("--run", options.run, "id of the run within the cell")->required();
+  app.add_option("--domain", options.domain, "DDS domain")->check(CLI::Range(0, 232))->capture_default_str();
+  std::string transport = "udp";
+  app.add_option("--transport", transport, "udp or shm")->check(CLI::IsMember({"udp", "shm"}))->capture_default_str();
+  bool no_recording = false;
+  app.add_flag("--no-recording", no_recording, "no recorder takes part in this run");
+  if (role == "controller") {
+    app.add_option("--name", options.name, "the controller's name in the scenario")->required();
+    app.add_option("--law", options.law, "its law, to be checked against the scenario");
+  }
+  if (role == "recorder") app.add_option("--out", options.out, "file to write (MCAP)")->required();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp& help) {
+    app.exit(help);
+    return false;
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(std::string(error.what()) + " (see --help)");
+  }
+  options.transport = transport == "shm" ? dds::Transport::kSharedMemory : dds::Transport::kUdp;
+  options.recording = !no_recording;
+  return true;
+}
+
+CLI::Validator cellName() {
+  return {[](std::string& name) -> std::string {
+            const bool is_good = !name.empty() && name.size() < 32 && std::all_of(name.begin(), name.end(), [](char c) {
+              return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+            });
+            return is_good ? "" : "expected 1 to 31 of A-Z a-z 0-9 _ -, found " + name;
+          },
+          "NAME"};
+}
+
+std::vector<std::string> toArguments(const ServiceOptions& options) {
+  std::vector<std::string> arguments{"--scenario",  options.scenario_file,
+                                     "--cell",      options.cell,
+                                     "--run",       options.run,
+                                     "--domain",    std::to_string(options.domain),
+                                     "--transport", options.transport == dds::Transport::kSharedMemory ? "shm" : "udp"};
+  if (!options.recording) arguments.emplace_back("--no-recording");
+  if (options.role == "controller") arguments.insert(arguments.end(), {"--name", options.name, "--law", options.law});
+  if (options.role == "recorder") arguments.insert(arguments.end(), {"--out", options.out});
+  return arguments;
+}
+
+std::vector<std::string> serviceNames(const Scenario& scenario) {
+  std::vector<std::string> names{kPlantName, kTrajectoryName};
+  if (scenario.hasEnvironment()) names.emplace_back(kEnvironmentName);
+  for (const std::string& name : controllerNames(scenario)) names.push_back(name);
+  return withRecorder(std::move(names), scenario);
+}
+
+std::vector<std::string> servicesBut(const std::string& name, const Scenario& scenario) {
+  std::vector<std::string> names = serviceNames(scenario);
+  std::erase(names, name);
+  return names;
+}
+
+std::vector<std::string> controllerNames(const Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const ControllerConfig& controller : scenario.controllers) names.push_back(controller.name);
+  return names;
+}
+
+std::vector<std::string> withRecorder(std::vector<std::string> names, const Scenario& scenario) {
+  if (scenario.recording.enabled) names.emplace_back(kRecorderName);
+  return names;
+}
+
+}  // namespace baton

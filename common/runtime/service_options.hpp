@@ -1,0 +1,51 @@
+/// What every service is told on its command line; the supervisor writes it, a person may.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "dds/participant.hpp"
+#include "runtime/scenario.hpp"
+
+namespace baton {
+
+struct ServiceOptions {
+  std::string role;  // "plant", "controller", ...
+  std::string name;  // unique in the run; the role unless it is a controller
+  std::string scenario_file;
+  std::string cell = "lab";  // one robot with its parts
+  std::string run;           // this run of the cell
+  int domain = 0;
+  dds::Transport transport = dds::Transport::kUdp;
+  bool recording = true;  // whether a recorder takes part
+  std::string law;        // controller: must agree with the scenario when given
+  std::string out;        // recorder: file to write
+
+  [[nodiscard]] dds::ParticipantOptions participant() const;
+};
+
+/// Reads the command line of a service. Throws UsageError; prints help and returns false for --help.
+[[nodiscard]] bool parseServiceOptions(int argc, char** argv, const std::string& role, ServiceOptions& options);
+
+/// The arguments that make parseServiceOptions return `options`.
+[[nodiscard]] std::vector<std::string> toArguments(const ServiceOptions& options);
+
+/// Names of all services a scenario needs, the plant first.
+[[nodiscard]] std::vector<std::string> serviceNames(const Scenario& scenario);
+/// The same without one of them: everybody that one has to do with.
+[[nodiscard]] std::vector<std::string> servicesBut(const std::string& name, const Scenario& scenario);
+[[nodiscard]] std::vector<std::string> controllerNames(const Scenario& scenario);
+/// `names` and, in a run that is recorded, the recorder: the readers of a topic that must be whole in the recording.
+[[nodiscard]] std::vector<std::string> withRecorder(std::vector<std::string> names, const Scenario& scenario);
+
+/// Refuses a cell's name that is not 1 to 31 of A-Z a-z 0-9 _ -: it becomes part of a file's name and of a DDS
+/// partition.
+[[nodiscard]] CLI::Validator cellName();
+
+inline constexpr const char* kPlantName = "plant";
+inline constexpr const char* kEnvironmentName = "environment";
+inline constexpr const char* kTrajectoryName = "trajectory";
+inline constexpr const char* kRecorderName = "recorder";
+
+}  // namespace baton

@@ -1,0 +1,222 @@
+#include "time/baton_arbiter.hpp"
+
+#include <cstdarg>
+#include <cstdio>
+
+namespace baton {
+namespace {
+using Kind = ArbiterAction::Kind;
+using Step = unsigned long long;  // what %llu prints
+}  // namespace
+
+BatonArbiter::BatonArbiter(const ArbiterConfig& config)
+    : config_(config), holder_(config.holder), failed_(config.members.size(), 0) {}
+
+void BatonArbiter::act(Kind kind, const HandoverPlan& plan, const char* format, ...) noexcept {
+  if (queue_size_ == kQueue) return;  // taken at every step; a step makes two at most
+  ArbiterAction& action = queue_[(queue_head_ + queue_size_++) % kQueue];
+  action.kind = kind;
+  action.plan = plan;
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(action.reason.data(), action.reason.size(), format, arguments);
+  va_end(arguments);
+}
+
+std::optional<ArbiterAction> BatonArbiter::takeAction() noexcept {
+  if (queue_size_ == 0) return std::nullopt;
+  const std::size_t head = queue_head_;
+  queue_head_ = (queue_head_ + 1) % kQueue;
+  --queue_size_;
+  return queue_[head];
+}
+
+bool BatonArbiter::hasFailed(int member) const noexcept {
+  return member != kBrake && failed_[static_cast<std::size_t>(member)] != 0;
+}
+
+void BatonArbiter::refuseUnknown(std::uint64_t request_id, const char* target, std::uint64_t open_step) noexcept {
+  HandoverPlan plan;
+  plan.request_id = request_id;
+  plan.outgoing = holder_;
+  plan.decided_at_step = open_step;
+  act(Kind::kRefused, plan, "no controller is called %.40s; see the controllers command", target);
+}
+
+void BatonArbiter::request(const HandoverRequest& request, std::uint64_t open_step) noexcept {
+  HandoverPlan plan;
+  plan.request_id = request.request_id;
+  plan.outgoing = holder_;
+  plan.incoming = request.target;
+  plan.decided_at_step = open_step;
+  plan.force = request.force;
+  const std::uint64_t earliest = open_step + 1 + config_.margin_steps;
+  plan.at_step = request.at_step == 0 ? earliest : request.at_step;
+
+  const auto target = static_cast<std::size_t>(request.target);
+  if (request.target < 0 || target >= config_.members.size()) {
+    return act(Kind::kRefused, plan, "no such controller");
+  }
+  const char* name = config_.members[target].name.c_str();
+  if (phase_ != Phase::kIdle) {
+    const char* busy = config_.members[static_cast<std::size_t>(plan_.incoming)].name.c_str();
+    return act(Kind::kRefused, plan, "a handover to %s at step %llu is under way; ask again after it", busy,
+               Step{plan_.at_step});
+  }
+  if (holder_failed_at_) {
+    return act(Kind::kRefused, plan, "the holder has failed and step %llu goes to a fallback; ask again after it",
+               Step{open_step + 1});
+  }
+  if (request.target == holder_) return act(Kind::kRefused, plan, "%s holds the baton already", name);
+  if (failed_[target] != 0) return act(Kind::kRefused, plan, "%s has failed", name);
+  if (plan.at_step < earliest) {
+    return act(Kind::kRefused, plan,
+               "step %llu is too near: step %llu is open and the margin is %llu, so %llu is the first possible",
+               Step{plan.at_step}, Step{open_step}, Step{config_.margin_steps}, Step{earliest});
+  }
+  if (config_.end_step > 0 && plan.at_step >= config_.end_step) {
+    return act(Kind::kRefused, plan, "step %llu is not before the end of the run at step %llu", Step{plan.at_step},
+               Step{config_.end_step});
+  }
+  plan.plan_id = ++last_plan_id_;
+  plan.forecast_step = plan.at_step - config_.margin_steps;
+  plan_ = plan;
+  phase_ = Phase::kPreparing;
+  forecast_here_ = incoming_committed_ = outgoing_committed_ = false;
+  act(Kind::kPrepare, plan_, "%s", "");
+}
+
+void BatonArbiter::prepareAcknowledged(std::uint64_t plan_id, int member, bool ready, const JointVector& effort,
+                                       const char* reason) noexcept {
+  if (phase_ != Phase::kPreparing || plan_id != plan_.plan_id || member != plan_.incoming) return;
+  forecast_here_ = true;
+  forecast_ready_ = ready;
+  forecast_ = effort;
+  std::snprintf(not_ready_.data(), not_ready_.size(), "%s", reason);
+}
+
+void BatonArbiter::commitAcknowledged(std::uint64_t plan_id, int member) noexcept {
+  if (phase_ != Phase::kCommitted || plan_id != plan_.plan_id) return;
+  if (member == plan_.incoming) incoming_committed_ = true;
+  if (member == plan_.outgoing) outgoing_committed_ = true;
+}
+
+void BatonArbiter::drop(Kind outcome, const char* reason) noexcept {
+  act(Kind::kCancel, plan_, "%s", reason);
+  act(outcome, plan_, "%s", reason);
+  phase_ = Phase::kIdle;
+}
+
+void BatonArbiter::consider(std::uint64_t open_step, const JointVector& holder_effort, bool in_contact) noexcept {
+  contact_ = in_contact;
+  if (phase_ != Phase::kPreparing || open_step < plan_.forecast_step) return;
+  const ArbiterMember& incoming = config_.members[static_cast<std::size_t>(plan_.incoming)];
+  ReasonText why{};
+  const auto refuse = [&] { drop(Kind::kRefused, why.data()); };
+  if (!forecast_here_) {
+    if (open_step == plan_.forecast_step) return;  // it still may come; in lockstep it will
+    std::snprintf(why.data(), why.size(), "%s gave no forecast for step %llu in time", incoming.name.c_str(),
+                  Step{plan_.forecast_step});
+    return refuse();
+  }
+  if (open_step != plan_.forecast_step) {
+    // Realtime only: it came after its step, so there is nothing to compare it with.
+    std::snprintf(why.data(), why.size(), "%s forecast step %llu too late", incoming.name.c_str(),
+                  Step{plan_.forecast_step});
+    return refuse();
+  }
+  if (!forecast_ready_) {
+    std::snprintf(why.data(), why.size(), "%s is not ready: %.120s", incoming.name.c_str(), not_ready_.data());
+    return refuse();
+  }
+  if (incoming.requires_contact && !in_contact) {
+    std::snprintf(why.data(), why.size(), "%s controls force and the tip touches nothing", incoming.name.c_str());
+    return refuse();
+  }
+  if (forecast_.size() != holder_effort.size() || !forecast_.allFinite()) {
+    std::snprintf(why.data(), why.size(), "%s forecasts %d efforts, not %d finite ones", incoming.name.c_str(),
+                  static_cast<int>(forecast_.size()), static_cast<int>(holder_effort.size()));
+    return refuse();
+  }
+  Eigen::Index joint = 0;
+  const double jump = (forecast_ - holder_effort).cwiseAbs().maxCoeff(&joint);
+  if (jump > config_.max_effort_step && !plan_.force) {
+    std::snprintf(why.data(), why.size(),
+                  "%s would change joint %d by %.4g, above the limit of %.4g; force it to insist",
+                  incoming.name.c_str(), static_cast<int>(joint) + 1, jump, config_.max_effort_step);
+    return refuse();
+  }
+  phase_ = Phase::kCommitted;
+  act(Kind::kCommit, plan_, "%s", "");
+}
+
+int BatonArbiter::awaitedMember(std::uint64_t open_step) const noexcept {
+  if (phase_ == Phase::kPreparing && open_step >= plan_.forecast_step && !forecast_here_) return plan_.incoming;
+  if (phase_ == Phase::kCommitted && open_step + 1 >= plan_.at_step) {
+    if (!incoming_committed_) return plan_.incoming;
+    if (!outgoing_committed_ && !hasFailed(plan_.outgoing)) return plan_.outgoing;
+  }
+  return kBrake;
+}
+
+bool BatonArbiter::awaits(std::uint64_t open_step) const noexcept { return awaitedMember(open_step) != kBrake; }
+
+int BatonArbiter::open(std::uint64_t step) noexcept {
+  if (holder_failed_at_) {
+    HandoverPlan plan;
+    plan.outgoing = holder_;
+    plan.decided_at_step = *holder_failed_at_;
+    plan.at_step = step;
+    holder_ = kBrake;
+    for (const int candidate : config_.fallback) {
+      const ArbiterMember& member = config_.members[static_cast<std::size_t>(candidate)];
+      if (!hasFailed(candidate) && (contact_ || !member.requires_contact)) {
+        holder_ = candidate;
+        break;
+      }
+    }
+    plan.incoming = holder_;
+    holder_failed_at_.reset();
+    changed_at_ = step;
+    act(Kind::kDone, plan, "failover: %s", failure_.data());
+  } else if (phase_ == Phase::kCommitted && step >= plan_.at_step) {
+    if (incoming_committed_) {
+      holder_ = plan_.incoming;
+      handed_over_by_ = plan_.outgoing;
+      changed_at_ = handover_at_ = step;
+      act(Kind::kDone, plan_, "%s", "");
+      phase_ = Phase::kIdle;
+    } else {
+      drop(Kind::kRefused, "the incoming controller did not acknowledge the commit in time");
+    }
+  }
+  return holder_;
+}
+
+int BatonArbiter::outgoingAt(std::uint64_t step) const noexcept {
+  const bool first = handover_at_ && *handover_at_ == step;
+  return first && !hasFailed(handed_over_by_) ? handed_over_by_ : kBrake;
+}
+
+void BatonArbiter::memberFailed(int member, std::uint64_t open_step, const char* reason) noexcept {
+  const auto index = static_cast<std::size_t>(member);
+  if (member < 0 || index >= failed_.size() || failed_[index] != 0) return;
+  failed_[index] = 1;
+  if (phase_ != Phase::kIdle && member == plan_.incoming) drop(Kind::kRefused, reason);
+  if (member == holder_) {
+    if (phase_ != Phase::kIdle) drop(Kind::kRefused, reason);
+    holder_failed_at_ = open_step;
+    std::snprintf(failure_.data(), failure_.size(), "%.150s at step %llu", reason, Step{open_step});
+  }
+}
+
+void BatonArbiter::memberReturned(int member) noexcept {
+  const auto index = static_cast<std::size_t>(member);
+  if (member >= 0 && index < failed_.size() && member != holder_) failed_[index] = 0;
+}
+
+void BatonArbiter::runEnded() noexcept {
+  if (phase_ != Phase::kIdle) drop(Kind::kRefused, "the run has ended");
+}
+
+}  // namespace baton

@@ -1,0 +1,107 @@
+#include "time/step_master.hpp"
+
+#include <algorithm>
+
+namespace baton {
+
+const char* toString(Hold hold) noexcept {
+  switch (hold) {
+    case Hold::kNone: return "nothing";
+    case Hold::kNotStarted: return "the other services to be ready";
+    case Hold::kEnded: return "nothing, the run is over";
+    case Hold::kPaused: return "sim resume";
+    case Hold::kContact: return "the environment";
+    case Hold::kCommand: return "the controller that holds the baton";
+    case Hold::kHandover: return "the outgoing controller's last command";
+    case Hold::kSwap: return "the controllers to acknowledge a swap";
+    case Hold::kRecorder: return "the recorder";
+  }
+  return "?";
+}
+
+void StepMaster::openStep() noexcept {
+  has_contact_ = false;
+  has_command_ = false;
+  has_outgoing_ = false;
+  needs_outgoing_ = false;
+}
+
+void StepMaster::start() noexcept {
+  if (phase_ == SimPhase::kStarting) phase_ = SimPhase::kRunning;
+}
+
+void StepMaster::pause() noexcept {
+  if (phase_ == SimPhase::kRunning) phase_ = SimPhase::kPaused;
+  steps_left_ = 0;
+}
+
+void StepMaster::resume() noexcept {
+  if (phase_ == SimPhase::kPaused) phase_ = SimPhase::kRunning;
+  steps_left_ = 0;
+}
+
+void StepMaster::stepBy(std::uint64_t steps) noexcept {
+  if (isOver() || phase_ == SimPhase::kStarting || steps == 0) return;
+  phase_ = SimPhase::kRunning;
+  steps_left_ = steps;
+}
+
+void StepMaster::finish() noexcept {
+  if (!isOver()) phase_ = SimPhase::kFinished;
+}
+
+void StepMaster::abort() noexcept {
+  if (!isOver()) phase_ = SimPhase::kAborted;
+}
+
+bool StepMaster::contactArrived(std::uint64_t step) noexcept {
+  if (step != step_) return false;
+  return has_contact_ = true;
+}
+
+bool StepMaster::commandArrived(std::uint64_t step) noexcept {
+  if (step != step_) return false;
+  return has_command_ = true;
+}
+
+bool StepMaster::outgoingCommandArrived(std::uint64_t step) noexcept {
+  if (step != step_) return false;
+  return has_outgoing_ = true;
+}
+
+void StepMaster::recorderAcknowledged(std::uint64_t step) noexcept { acknowledged_ = std::max(acknowledged_, step); }
+
+Hold StepMaster::inputsHold() const noexcept {
+  if (config_.needs_contact && !has_contact_) return Hold::kContact;
+  if (!has_command_) return Hold::kCommand;
+  if (needs_outgoing_ && !has_outgoing_) return Hold::kHandover;
+  return Hold::kNone;
+}
+
+Hold StepMaster::hold() const noexcept {
+  switch (phase_) {
+    case SimPhase::kStarting: return Hold::kNotStarted;
+    case SimPhase::kFinished:
+    case SimPhase::kAborted: return Hold::kEnded;
+    case SimPhase::kPaused: return Hold::kPaused;
+    case SimPhase::kRunning: break;
+  }
+  if (const Hold inputs = inputsHold(); inputs != Hold::kNone) return inputs;
+  if (awaits_swap_) return Hold::kSwap;
+  const bool is_ahead = step_ > acknowledged_ && step_ - acknowledged_ >= config_.credit;
+  if (config_.credit > 0 && is_ahead) return Hold::kRecorder;
+  return Hold::kNone;
+}
+
+void StepMaster::advance() noexcept {
+  if (phase_ != SimPhase::kRunning) return;
+  ++step_;
+  openStep();
+  if (config_.end_step > 0 && step_ >= config_.end_step) {
+    phase_ = SimPhase::kFinished;
+  } else if (steps_left_ > 0 && --steps_left_ == 0) {
+    phase_ = SimPhase::kPaused;
+  }
+}
+
+}  // namespace baton

@@ -1,0 +1,264 @@
+#include "bag_command.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mcap/reader.hpp"
+
+namespace baton {
+namespace {
+
+enum class Verdict {
+  kComplete,    // finished, and nothing is missing as far as the file itself can tell
+  kIncomplete,  // finished, but its certificate says that messages are missing, or it has none
+  kCut,         // ends in the middle
+  kDamaged      // parts of it cannot be read
+};
+
+/// One topic and type, all its writers together.
+struct TopicSummary {
+  std::set<std::string> writers;  // services; the GUID of one that has no name
+  std::uint64_t messages = 0;
+  std::uint64_t gaps = 0;  // messages missing between those of a writer, by their sequence numbers
+  std::uint64_t first_ns = 0;
+  std::uint64_t last_ns = 0;
+
+  /// Mean over log time [Hz].
+  [[nodiscard]] double rate() const {
+    return last_ns > first_ns ? static_cast<double>(messages - 1) / (static_cast<double>(last_ns - first_ns) * 1e-9)
+                              : 0.0;
+  }
+};
+
+struct BagSummary {
+  std::string file;
+  mcap::FileInfo info;
+  mcap::StringMap run;                         // "baton.run": what it is a recording of
+  std::optional<mcap::StringMap> certificate;  // "baton.certificate"
+  std::vector<std::string> damage;
+  std::uint64_t messages = 0;  // that could be read, as all that follows
+  std::uint64_t plain_bytes = 0;
+  std::uint64_t start_ns = 0;
+  std::uint64_t end_ns = 0;
+  std::map<std::pair<std::string, std::string>, TopicSummary> topics;  // by name and type
+  std::vector<mcap::AttachmentIndex> attachments;
+
+  [[nodiscard]] double duration() const { return static_cast<double>(end_ns - start_ns) * 1e-9; }
+  /// Message records as they were before compression, to the size of the file.
+  [[nodiscard]] double compression() const {
+    return static_cast<double>(plain_bytes) / static_cast<double>(std::max<std::uint64_t>(1, info.file_bytes));
+  }
+};
+
+std::string valueOf(const mcap::StringMap& map, const std::string& key) {
+  const auto found = map.find(key);
+  return found == map.end() ? "" : found->second;
+}
+
+Verdict verdictOn(const BagSummary& bag) {
+  if (!bag.damage.empty()) return Verdict::kDamaged;
+  if (!bag.info.is_complete) return Verdict::kCut;
+  const bool needs_certificate = !bag.run.empty();  // a finished file of somebody else has none
+  const bool is_certified = bag.certificate && valueOf(*bag.certificate, "complete") == "true";
+  return is_certified || (!bag.certificate && !needs_certificate) ? Verdict::kComplete : Verdict::kIncomplete;
+}
+
+ExitCode exitCodeOf(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kComplete: return ExitCode::kOk;
+    case Verdict::kIncomplete:
+    case Verdict::kCut: return ExitCode::kFailed;
+    case Verdict::kDamaged: return ExitCode::kUsage;
+  }
+  return ExitCode::kUsage;
+}
+
+const char* nameOf(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kComplete: return "complete";
+    case Verdict::kIncomplete: return "incomplete";
+    case Verdict::kCut: return "cut";
+    case Verdict::kDamaged: return "damaged";
+  }
+  return "";
+}
+
+/// What the verdict rests on, in a sentence.
+std::string reasonFor(const BagSummary& bag) {
+  if (!bag.damage.empty()) return bag.damage.front();
+  if (!bag.info.is_complete) return bag.info.problem;
+  if (bag.certificate) return "by its certificate: " + valueOf(*bag.certificate, "summary");
+  return bag.run.empty() ? "finished; it was not recorded by Baton and has no certificate" : "it has no certificate";
+}
+
+/// Reads all messages, so that every CRC is checked and every gap is found.
+void readMessages(const mcap::Reader& reader, BagSummary& bag) {
+  std::map<mcap::ChannelId, std::uint32_t> sequences;
+  reader.forEachMessage({.order = mcap::MessageFilter::Order::kFile}, [&](const mcap::MessageView& message) {
+    const mcap::Channel& channel = *message.channel;
+    const std::string type = valueOf(channel.metadata, "type");
+    const bool has_type = !type.empty() || message.schema == nullptr;
+    TopicSummary& topic = bag.topics[{channel.topic, has_type ? type : message.schema->name}];
+    const auto [last, is_first] = sequences.try_emplace(channel.id, message.sequence);
+    if (is_first) {
+      const std::string service = valueOf(channel.metadata, "service");
+      const std::string writer = service.empty() ? valueOf(channel.metadata, "writer") : service;
+      if (!writer.empty()) topic.writers.insert(writer);
+    } else {
+      // Sequence numbers may wrap; one that does not grow is of a writer that does not count.
+      const std::uint32_t growth = message.sequence - last->second;
+      if (growth > 1 && growth < 0x8000'0000U) topic.gaps += growth - 1;
+      last->second = message.sequence;
+    }
+    topic.first_ns = topic.messages == 0 ? message.log_time_ns : std::min(topic.first_ns, message.log_time_ns);
+    topic.last_ns = std::max(topic.last_ns, message.log_time_ns);
+    ++topic.messages;
+    bag.start_ns = bag.messages == 0 ? message.log_time_ns : std::min(bag.start_ns, message.log_time_ns);
+    bag.end_ns = std::max(bag.end_ns, message.log_time_ns);
+    ++bag.messages;
+    bag.plain_bytes += mcap::kMessageHeadBytes + message.data.size();
+  });
+}
+
+BagSummary summarize(const std::string& file) {
+  BagSummary bag;
+  bag.file = file;
+  std::map<std::uint64_t, std::string> damage;  // by place: each pass comes across the same
+  const mcap::Reader reader(file, {.on_damage = [&damage](const mcap::Damage& found) {
+                              damage[found.offset] = fmt::format("{} bytes at byte {} cannot be read: {}", found.length,
+                                                                 found.offset, found.reason);
+                            }});
+  bag.info = reader.info();
+  bag.attachments = reader.attachments();
+  readMessages(reader, bag);
+  for (const auto& [offset, text] : damage) bag.damage.push_back(text);
+  try {
+    for (const mcap::Metadata& metadata : reader.metadata()) {
+      if (metadata.name == "baton.run") bag.run = metadata.values;
+      if (metadata.name == "baton.certificate") bag.certificate = metadata.values;
+    }
+    for (const mcap::AttachmentIndex& attachment : bag.attachments) (void)reader.readAttachment(attachment);
+  } catch (const mcap::FormatError& error) {
+    bag.damage.emplace_back(error.what());
+  }
+  return bag;
+}
+
+std::string joined(const std::set<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+void printTopics(const BagSummary& bag) {
+  std::size_t name_width = 5, type_width = 4;
+  for (const auto& [key, topic] : bag.topics) {
+    name_width = std::max(name_width, key.first.size());
+    type_width = std::max(type_width, key.second.size());
+  }
+  fmt::print("\n{:<{}}  {:<{}}  {:>9}  {:>9}  {:>6}  writers\n", "topic", name_width, "type", type_width, "messages",
+             "rate [Hz]", "gaps");
+  for (const auto& [key, topic] : bag.topics) {
+    fmt::print("{:<{}}  {:<{}}  {:>9}  {:>9.1f}  {:>6}  {}\n", key.first, name_width, key.second, type_width,
+               topic.messages, topic.rate(), topic.gaps, joined(topic.writers));
+  }
+}
+
+void printText(const BagSummary& bag) {
+  fmt::print("{}: {}\n", bag.file, nameOf(verdictOn(bag)));
+  fmt::print("            {}\n", reasonFor(bag));
+  for (std::size_t i = 1; i < bag.damage.size(); ++i) fmt::print("            {}\n", bag.damage[i]);
+  if (bag.info.is_complete && !bag.info.problem.empty()) fmt::print("note        {}\n", bag.info.problem);
+  if (!bag.run.empty()) {
+    const auto of = [&](const char* key) { return valueOf(bag.run, key); };
+    fmt::print("recorded    {} with robot {}, run {} of cell {} on {}\n", of("scenario"), of("robot"), of("run"),
+               of("cell"), of("host"));
+    fmt::print("by          Baton {}, {} ({})\n", of("version"), of("compiler"), of("flags"));
+  }
+  fmt::print("messages    {} in {:.3f} s\n", bag.messages, bag.duration());
+  fmt::print("size        {:.2f} MB, messages compressed {:.2f} : 1\n", static_cast<double>(bag.info.file_bytes) * 1e-6,
+             bag.compression());
+  for (const mcap::AttachmentIndex& attachment : bag.attachments) {
+    fmt::print("attachment  {} ({}, {} bytes)\n", attachment.name, attachment.media_type, attachment.data_size);
+  }
+  printTopics(bag);
+}
+
+nlohmann::ordered_json toJson(const BagSummary& bag) {
+  nlohmann::ordered_json topics = nlohmann::ordered_json::array();
+  for (const auto& [key, topic] : bag.topics) {
+    topics.push_back({{"topic", key.first},
+                      {"type", key.second},
+                      {"writers", topic.writers},
+                      {"messages", topic.messages},
+                      {"rate_Hz", topic.rate()},
+                      {"gaps", topic.gaps}});
+  }
+  nlohmann::ordered_json attachments = nlohmann::ordered_json::array();
+  for (const mcap::AttachmentIndex& attachment : bag.attachments) {
+    attachments.push_back(
+        {{"name", attachment.name}, {"media_type", attachment.media_type}, {"size_B", attachment.data_size}});
+  }
+  nlohmann::ordered_json json{{"file", bag.file},
+                              {"verdict", nameOf(verdictOn(bag))},
+                              {"reason", reasonFor(bag)},
+                              {"damage", bag.damage},
+                              {"cut_at_B", nullptr},
+                              {"run", bag.run},
+                              {"certificate", nullptr},
+                              {"messages", bag.messages},
+                              {"start_ns", bag.start_ns},
+                              {"duration_s", bag.duration()},
+                              {"size_B", bag.info.file_bytes},
+                              {"compression_ratio", bag.compression()},
+                              {"attachments", attachments},
+                              {"topics", topics}};
+  if (!bag.info.is_complete) json["cut_at_B"] = bag.info.complete_bytes;
+  if (bag.certificate) {
+    json["certificate"] = {{"complete", valueOf(*bag.certificate, "complete") == "true"},
+                           {"summary", valueOf(*bag.certificate, "summary")}};
+  }
+  return json;
+}
+
+struct BagRequest {
+  std::string file;
+  bool json = false;
+};
+
+}  // namespace
+
+void addBagCommand(CLI::App& app, ExitCode& exit_code) {
+  CLI::App* bag = app.add_subcommand("bag", "look into a recording");
+  bag->require_subcommand(1);
+  const auto request = std::make_shared<BagRequest>();
+  CLI::App* info = bag->add_subcommand("info", "what a recording is of, what is in it, and whether it is whole");
+  info->footer(
+      "Reads the whole file, so that every checksum is checked and every gap is found.\n"
+      "Exit codes: 0 complete, 1 incomplete or cut, 2 damaged or not a recording, 3 cannot be opened.");
+  info->add_option("file", request->file, "recording (MCAP)")->required();
+  info->add_flag("--json", request->json, "as a JSON object");
+  info->callback([request, &exit_code] {
+    const BagSummary summary = summarize(request->file);
+    if (request->json) {
+      // Text in a recording may come from anywhere.
+      std::puts(toJson(summary).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+    } else {
+      printText(summary);
+    }
+    exit_code = exitCodeOf(verdictOn(summary));
+  });
+}
+
+}  // namespace baton

@@ -1,0 +1,114 @@
+/// Talks to a run from outside: reads the latest word on a topic, sends a request and waits for its answer. Waiting is
+/// always bounded, and what did not come is said.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "dds/typed.hpp"
+#include "runtime/cell.hpp"
+
+namespace baton {
+
+class CellClient {
+ public:
+  /// Long enough for a lost datagram of discovery to be sent again more than once; what answers is not waited for.
+  static constexpr std::chrono::seconds kPatience{15};
+
+  explicit CellClient(const RunInfo& info);
+
+  /// The run in a cell of this machine. Throws UnavailableError, listing what runs, when there is none.
+  [[nodiscard]] static RunInfo find(int domain, const std::string& cell);
+
+  /// Collects samples of a topic until `enough(all so far)`, at most `patience`. Returns what came.
+  template <class T>
+  std::vector<T> collect(const dds::Topic<T>& topic, const std::function<bool(const std::vector<T>&)>& enough,
+                         std::chrono::milliseconds patience = kPatience);
+
+  /// The newest sample of a topic with one writer, or nothing within `patience`.
+  template <class T>
+  std::optional<T> latest(const dds::Topic<T>& topic, std::chrono::milliseconds patience = kPatience);
+
+  /// Sends `request` once `service` listens and talks back, then waits for the first answer that `is_answer` accepts.
+  /// Throws UnavailableError when nobody listens; returns nothing when no answer came in time.
+  template <class Request, class Answer>
+  std::optional<Answer> ask(const dds::Topic<Request>& request_topic, const Request& request,
+                            const dds::Topic<Answer>& answer_topic, const std::function<bool(const Answer&)>& is_answer,
+                            const std::string& service, std::chrono::milliseconds patience = kPatience);
+
+  [[nodiscard]] const RunInfo& info() const { return info_; }
+  /// Unlike any other of this run.
+  [[nodiscard]] static std::uint64_t newRequestId();
+
+ private:
+  [[nodiscard]] bool isMatchedWith(const std::set<dds::GuidPrefix>& matched, const std::string& service) const;
+
+  RunInfo info_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  dds::Participant participant_;
+};
+
+template <class T>
+std::vector<T> CellClient::collect(const dds::Topic<T>& topic, const std::function<bool(const std::vector<T>&)>& enough,
+                                   std::chrono::milliseconds patience) {
+  std::vector<T> samples;
+  const dds::Reader<T> reader(participant_, topic, [&](const T& message, const dds::RawSample&) {
+    const std::lock_guard lock(mutex_);
+    samples.push_back(message);
+    changed_.notify_all();
+  });
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, patience, [&] { return enough(samples); });
+  return samples;
+}
+
+template <class T>
+std::optional<T> CellClient::latest(const dds::Topic<T>& topic, std::chrono::milliseconds patience) {
+  const std::vector<T> samples = collect<T>(
+      topic, [](const std::vector<T>& all) { return !all.empty(); }, patience);
+  return samples.empty() ? std::nullopt : std::optional(samples.back());
+}
+
+template <class Request, class Answer>
+std::optional<Answer> CellClient::ask(const dds::Topic<Request>& request_topic, const Request& request,
+                                      const dds::Topic<Answer>& answer_topic,
+                                      const std::function<bool(const Answer&)>& is_answer, const std::string& service,
+                                      std::chrono::milliseconds patience) {
+  const auto wake = [this] {
+    const std::lock_guard lock(mutex_);
+    changed_.notify_all();
+  };
+  std::optional<Answer> answer;
+  const dds::Reader<Answer> reader(
+      participant_, answer_topic,
+      [&](const Answer& message, const dds::RawSample&) {
+        const std::lock_guard lock(mutex_);
+        if (!answer && is_answer(message)) answer = message;
+        changed_.notify_all();
+      },
+      wake);
+  dds::Writer<Request> writer(participant_, request_topic, wake);
+  // Writer and reader are matched at different times: both have to be before a request is worth sending.
+  std::unique_lock lock(mutex_);
+  const bool is_heard = changed_.wait_for(lock, kPatience, [&] {
+    return isMatchedWith(writer.raw().matched(), service) && isMatchedWith(reader.raw().matched(), service);
+  });
+  lock.unlock();
+  if (!is_heard) {
+    throw UnavailableError("the " + service + " of run " + info_.run + " does not listen: see `baton status`");
+  }
+  writer.write(request);
+  lock.lock();
+  changed_.wait_for(lock, patience, [&] { return answer.has_value(); });
+  return answer;
+}
+
+}  // namespace baton

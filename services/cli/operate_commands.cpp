@@ -1,0 +1,351 @@
+#include "operate_commands.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cell_client.hpp"
+#include "run_commands.hpp"
+#include "runtime/scenario.hpp"
+#include "runtime/service_options.hpp"
+
+namespace baton {
+namespace {
+using Json = nlohmann::ordered_json;
+using ull = unsigned long long;
+
+struct Target {
+  std::string cell = "lab";
+  int domain = 0;
+  bool json = false;
+};
+
+const char* nameOf(msg::SimState state) {
+  switch (state) {
+    case msg::SIM_STATE_STARTING: return "starting";
+    case msg::SIM_STATE_RUNNING: return "running";
+    case msg::SIM_STATE_PAUSED: return "paused";
+    case msg::SIM_STATE_FINISHED: return "finished";
+    case msg::SIM_STATE_ABORTED: return "aborted";
+  }
+  return "?";
+}
+
+const char* nameOf(msg::ControllerState state) {
+  switch (state) {
+    case msg::CONTROLLER_STARTING: return "starting";
+    case msg::CONTROLLER_COLD: return "cold";
+    case msg::CONTROLLER_STANDBY: return "standby";
+    case msg::CONTROLLER_ACTIVE: return "active";
+    case msg::CONTROLLER_FAILED: return "failed";
+  }
+  return "?";
+}
+
+const char* nameOf(msg::ServiceState state) {
+  switch (state) {
+    case msg::SERVICE_STARTING: return "starting";
+    case msg::SERVICE_READY: return "ready";
+    case msg::SERVICE_DONE: return "done";
+    case msg::SERVICE_FAILED: return "failed";
+  }
+  return "?";
+}
+
+const char* nameOf(msg::RecorderState state) {
+  switch (state) {
+    case msg::RECORDER_WAITING: return "waiting";
+    case msg::RECORDER_RECORDING: return "recording";
+    case msg::RECORDER_CLOSED: return "closed";
+    case msg::RECORDER_FAILED: return "failed";
+  }
+  return "?";
+}
+
+/// Latest sample of each name, once all the expected ones have spoken.
+template <class T>
+std::map<std::string, T> latestByName(CellClient& client, const dds::Topic<T>& topic,
+                                      const std::vector<std::string>& expected) {
+  const auto byName = [](const std::vector<T>& all) {
+    std::map<std::string, T> latest;
+    for (const T& one : all) {
+      T& known = latest[one.name().c_str()];
+      if constexpr (std::is_same_v<T, msg::ServiceStatus>) {
+        // Another process tells of a death, so its word may come before or after those of a successor.
+        if (one.state() == msg::SERVICE_FAILED && known.pid() != 0 && known.pid() != one.pid()) continue;
+        if (known.state() == msg::SERVICE_FAILED && known.pid() == one.pid()) continue;
+      }
+      known = one;
+    }
+    return latest;
+  };
+  const auto hasAll = [&](const std::vector<T>& all) {
+    const auto latest = byName(all);
+    return std::all_of(expected.begin(), expected.end(), [&](const auto& name) { return latest.contains(name); });
+  };
+  return byName(client.collect<T>(topic, hasAll));
+}
+
+msg::SimStatus simStatus(CellClient& client) {
+  const auto status = client.latest(dds::topics::kSimStatus);
+  if (!status)
+    throw UnavailableError("the plant of run " + client.info().run + " says nothing; see `baton logs plant`");
+  return *status;
+}
+
+std::string effortText(const std::vector<double>& efforts) {
+  std::string text;
+  for (const double effort : efforts) {
+    std::array<char, 32> number{};
+    std::snprintf(number.data(), number.size(), "%s%.4f", text.empty() ? "" : " ", effort);
+    text += number.data();
+  }
+  return text;
+}
+
+void status(const Target& target) {
+  CellClient client(CellClient::find(target.domain, target.cell));
+  const Scenario scenario = loadScenario(client.info().scenario);
+  const msg::SimStatus sim = simStatus(client);
+  std::vector<std::string> expected = serviceNames(scenario);
+  if (client.info().recording.empty()) std::erase(expected, kRecorderName);
+  const auto services = latestByName(client, dds::topics::kServiceStatus, expected);
+  const double time_s = static_cast<double>(sim.time_ns()) * 1e-9;
+  if (target.json) {
+    Json json{{"run", client.info().run},
+              {"cell", client.info().cell},
+              {"scenario", client.info().scenario},
+              {"state", nameOf(sim.state())},
+              {"step", sim.step()},
+              {"end_step", sim.end_step()},
+              {"sim_time_s", time_s},
+              {"elapsed_s", sim.elapsed_s()},
+              {"rate", sim.rate()},
+              {"holder", sim.holder().c_str()},
+              {"waiting_for", sim.waiting_for().c_str()},
+              {"missed_steps", sim.missed_steps()},
+              {"recording", client.info().recording},
+              {"services", Json::array()}};
+    for (const auto& [name, service] : services) {
+      json["services"].push_back({{"name", name},
+                                  {"role", service.role().c_str()},
+                                  {"state", nameOf(service.state())},
+                                  {"pid", service.pid()},
+                                  {"text", service.text().c_str()}});
+    }
+    std::cout << json.dump(1) << '\n';
+    return;
+  }
+  std::printf("run %s of %s in cell %s, domain %d\n", client.info().run.c_str(), client.info().scenario.c_str(),
+              client.info().cell.c_str(), client.info().domain);
+  std::printf("%s at step %llu", nameOf(sim.state()), ull{sim.step()});
+  if (sim.end_step() > 0) std::printf(" of %llu", ull{sim.end_step()});
+  std::printf(", %.4f s of motion in %.2f s, %s%s, %s holds the baton\n", time_s, sim.elapsed_s(),
+              sim.mode() == msg::SIM_MODE_REALTIME ? "realtime" : "lockstep",
+              sim.rate() > 0.0 ? (" at rate " + std::to_string(sim.rate())).c_str() : " as fast as possible",
+              sim.holder().size() > 0 ? sim.holder().c_str() : "the brake");
+  if (sim.waiting_for().size() > 0) std::printf("waits for %s\n", sim.waiting_for().c_str());
+  for (const auto& [name, service] : services) {
+    std::printf("  %-16s %-12s %-9s pid %-8d %s\n", name.c_str(), service.role().c_str(), nameOf(service.state()),
+                static_cast<int>(service.pid()), service.text().c_str());
+  }
+}
+
+void controllers(const Target& target) {
+  CellClient client(CellClient::find(target.domain, target.cell));
+  const Scenario scenario = loadScenario(client.info().scenario);
+  const auto all = latestByName(client, dds::topics::kControllerStatus, controllerNames(scenario));
+  Json json = Json::array();
+  if (!target.json)
+    std::printf("%-16s %-28s %-9s %10s  %-32s %s\n", "name", "law", "state", "step", "effort [N m or N]",
+                "would change by");
+  for (const ControllerConfig& config : scenario.controllers) {
+    const auto found = all.find(config.name);
+    if (found == all.end()) {
+      if (target.json) {
+        json.push_back({{"name", config.name}, {"law", config.law}, {"state", "silent"}});
+      } else {
+        std::printf("%-16s %-28s silent\n", config.name.c_str(), config.law.c_str());
+      }
+      continue;
+    }
+    const msg::ControllerStatus& one = found->second;
+    if (target.json) {
+      json.push_back({{"name", config.name},
+                      {"law", one.law().c_str()},
+                      {"state", nameOf(one.state())},
+                      {"step", one.step()},
+                      {"uses_force", one.uses_force()},
+                      {"effort", one.effort()},
+                      {"effort_gap", one.effort_gap()},
+                      {"text", one.text().c_str()}});
+    } else {
+      std::printf("%-16s %-28s %-9s %10llu  %-32s %s%s\n", config.name.c_str(), one.law().c_str(), nameOf(one.state()),
+                  ull{one.step()}, effortText(one.effort()).c_str(), effortText(one.effort_gap()).c_str(),
+                  one.text().c_str());
+    }
+  }
+  if (target.json) std::cout << json.dump(1) << '\n';
+}
+
+void swap(const Target& target, const std::string& name, std::uint64_t at_step, bool force, ExitCode& exit_code) {
+  CellClient client(CellClient::find(target.domain, target.cell));
+  msg::SwapRequest request;
+  request.request_id(CellClient::newRequestId());
+  if (name.size() >= msg::MAX_NAME) throw UsageError("controller names have at most 31 characters");
+  request.target(name);
+  request.at_step(at_step);
+  request.force(force);
+  const auto outcome = client.ask<msg::SwapRequest, msg::SwapOutcome>(
+      dds::topics::kSwapRequest, request, dds::topics::kSwapOutcome,
+      [&](const msg::SwapOutcome& one) { return one.request_id() == request.request_id(); }, kPlantName);
+  if (!outcome) {
+    const msg::SimStatus sim = simStatus(client);
+    if (sim.state() == msg::SIM_STATE_PAUSED) {
+      throw UnavailableError(
+          "asked, but the run is paused: the handover takes place once it goes on (`baton sim resume`)");
+    }
+    throw UnavailableError("no outcome yet: the run stands at step " + std::to_string(sim.step()) + " and " +
+                           (at_step > sim.step() ? "the handover is for step " + std::to_string(at_step)
+                                                 : "waits for " + std::string(sim.waiting_for().c_str())));
+  }
+  exit_code = outcome->done() ? ExitCode::kOk : ExitCode::kFailed;
+  if (target.json) {
+    std::cout << Json{{"done", outcome->done()},
+                      {"outgoing", outcome->outgoing().c_str()},
+                      {"incoming", outcome->incoming().c_str()},
+                      {"decided_at_step", outcome->decided_at_step()},
+                      {"at_step", outcome->at_step()},
+                      {"blend_steps", outcome->blend_steps()},
+                      {"raw_effort_step", outcome->raw_effort_step()},
+                      {"applied_effort_step", outcome->applied_effort_step()},
+                      {"reason", outcome->reason().c_str()}}
+                     .dump(1)
+              << '\n';
+  } else if (outcome->done()) {
+    std::printf("%s holds the baton since step %llu, asked at step %llu\n", outcome->incoming().c_str(),
+                ull{outcome->at_step()}, ull{outcome->decided_at_step()});
+    std::printf("torques apart   %s (fades over %llu steps)\nthe joints felt %s\n",
+                effortText(outcome->raw_effort_step()).c_str(), ull{outcome->blend_steps()},
+                effortText(outcome->applied_effort_step()).c_str());
+  } else {
+    std::printf("refused: %s\n", outcome->reason().c_str());
+  }
+}
+
+void sim(const Target& target, const msg::SimRequest& what, ExitCode& exit_code) {
+  CellClient client(CellClient::find(target.domain, target.cell));
+  msg::SimRequest request = what;
+  request.request_id(CellClient::newRequestId());
+  const auto reply = client.ask<msg::SimRequest, msg::SimReply>(
+      dds::topics::kSimRequest, request, dds::topics::kSimReply,
+      [&](const msg::SimReply& one) { return one.request_id() == request.request_id(); }, kPlantName);
+  if (!reply) throw UnavailableError("the plant did not answer; see `baton status`");
+  exit_code = reply->accepted() ? ExitCode::kOk : ExitCode::kFailed;
+  if (target.json) {
+    std::cout
+        << Json{{"accepted", reply->accepted()}, {"step", reply->step()}, {"reason", reply->reason().c_str()}}.dump(1)
+        << '\n';
+  } else if (reply->accepted()) {
+    std::printf("done at step %llu\n", ull{reply->step()});
+  } else {
+    std::printf("refused at step %llu: %s\n", ull{reply->step()}, reply->reason().c_str());
+  }
+}
+
+void recordStatus(const Target& target, ExitCode& exit_code) {
+  CellClient client(CellClient::find(target.domain, target.cell));
+  if (client.info().recording.empty()) throw UnavailableError("run " + client.info().run + " has no recorder");
+  const auto status = client.latest(dds::topics::kRecorderStatus);
+  if (!status) throw UnavailableError("the recorder says nothing; see `baton logs recorder`");
+  exit_code = status->state() == msg::RECORDER_FAILED ? ExitCode::kFailed : ExitCode::kOk;
+  if (target.json) {
+    std::cout << Json{{"state", nameOf(status->state())}, {"path", status->path().c_str()},
+                      {"messages", status->messages()},   {"bytes", status->bytes()},
+                      {"lost", status->lost()},           {"acknowledged_step", status->acknowledged_step()},
+                      {"complete", status->complete()},   {"text", status->text().c_str()}}
+                     .dump(1)
+              << '\n';
+  } else {
+    std::printf("%s %s\n%llu messages, %.2f MB in the file, %llu lost, every loop sample up to step %llu\n%s",
+                nameOf(status->state()), status->path().c_str(), ull{status->messages()},
+                static_cast<double>(status->bytes()) / 1e6, ull{status->lost()}, ull{status->acknowledged_step()},
+                status->text().size() > 0 ? (std::string(status->text().c_str()) + "\n").c_str() : "");
+  }
+}
+
+void addSimCommands(CLI::App& app, const std::shared_ptr<Target>& target, ExitCode& exit_code) {
+  CLI::App* command = app.add_subcommand("sim", "pause, resume, step, change the rate, stop");
+  command->require_subcommand(1);
+  const auto request = std::make_shared<msg::SimRequest>();
+  const auto add = [&](const char* name, const char* help, msg::SimAction action) {
+    CLI::App* sub = command->add_subcommand(name, help);
+    addCellOptions(*sub, target->cell, target->domain);
+    sub->add_flag("--json", target->json, "print JSON");
+    sub->callback([=, &exit_code] {
+      request->action(action);
+      sim(*target, *request, exit_code);
+    });
+    return sub;
+  };
+  add("pause", "hold the run before its next step", msg::SIM_PAUSE);
+  add("resume", "go on", msg::SIM_RESUME);
+  add("stop", "end the run here, in order", msg::SIM_STOP);
+  add("step", "run N steps, then pause", msg::SIM_STEP)
+      ->add_option_function<std::uint64_t>(
+          "n", [request](const std::uint64_t& n) { request->steps(n); }, "how many steps")
+      ->required();
+  add("rate", "simulated seconds per second, or max", msg::SIM_RATE)
+      ->add_option_function<std::string>(
+          "rate",
+          [request](const std::string& text) {
+            if (text == "max") return request->rate(0.0);
+            char* end = nullptr;
+            const double rate = std::strtod(text.c_str(), &end);
+            if (end == text.c_str() || *end != '\0' || !std::isfinite(rate) || rate <= 0.0) {
+              throw UsageError("sim rate: expected a positive number or max, found " + text);
+            }
+            request->rate(rate);
+          },
+          "X or max")
+      ->required();
+}
+
+}  // namespace
+
+void addOperateCommands(CLI::App& app, ExitCode& exit_code) {
+  const auto target = std::make_shared<Target>();
+  const auto add = [&](const char* name, const char* help) {
+    CLI::App* command = app.add_subcommand(name, help);
+    addCellOptions(*command, target->cell, target->domain);
+    command->add_flag("--json", target->json, "print JSON");
+    return command;
+  };
+  add("status", "how the run and its services stand")->callback([=] { status(*target); });
+  add("controllers", "every controller: law, state, what it commands or would command")->callback([=] {
+    controllers(*target);
+  });
+
+  const auto name = std::make_shared<std::string>();
+  const auto at_step = std::make_shared<std::uint64_t>(0);
+  const auto force = std::make_shared<bool>(false);
+  CLI::App* swap_command = add("swap", "hand the baton to another controller");
+  swap_command->add_option("name", *name, "the controller that takes over")->required();
+  swap_command->add_option("--at", *at_step, "step at which it takes over (default: as soon as the margin allows)");
+  swap_command->add_flag("--force", *force, "even if the forecast jump is above the scenario's limit");
+  swap_command->callback([=, &exit_code] { swap(*target, *name, *at_step, *force, exit_code); });
+
+  addSimCommands(app, target, exit_code);
+  CLI::App* record = app.add_subcommand("record", "the recorder of the run");
+  record->require_subcommand(1);
+  CLI::App* record_status = record->add_subcommand("status", "what has been recorded so far");
+  addCellOptions(*record_status, target->cell, target->domain);
+  record_status->add_flag("--json", target->json, "print JSON");
+  record_status->callback([=, &exit_code] { recordStatus(*target, exit_code); });
+}
+
+}  // namespace baton

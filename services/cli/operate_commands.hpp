@@ -1,0 +1,12 @@
+/// `baton status`, `controllers`, `swap`, `sim`, `record`: what an operator asks of a run that is up.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "base/error.hpp"
+
+namespace baton {
+
+void addOperateCommands(CLI::App& app, ExitCode& exit_code);
+
+}  // namespace baton

@@ -1,0 +1,31 @@
+#include "replay_command.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "runtime/paths.hpp"
+
+namespace baton {
+
+void addReplayCommand(CLI::App& app, ExitCode& /*exit_code*/) {
+  CLI::App* command = app.add_subcommand("replay", "publish a recording again: the same bytes, in their rhythm");
+  command->prefix_command();  // everything behind the name is for the replayer, --help too
+  command->set_help_flag();
+  command->callback([command] {
+    const std::string program = siblingProgram("baton-replayer");
+    std::vector<std::string> arguments{"baton replay"};  // what its help calls it
+    for (const std::string& argument : command->remaining()) arguments.push_back(argument);
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    // It takes this process's place, and so its signals and its exit code are the replayer's.
+    execv(program.c_str(), argv.data());
+    throw UnavailableError("cannot start " + program + ": " + std::strerror(errno));
+  });
+}
+
+}  // namespace baton

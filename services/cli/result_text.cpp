@@ -1,0 +1,59 @@
+// How a finished run is told to a person.
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "run_session.hpp"
+
+namespace baton {
+namespace {
+
+double largest(const nlohmann::ordered_json& numbers) {
+  double result = 0.0;
+  for (const auto& number : numbers) result = std::max(result, std::abs(number.get<double>()));
+  return result;
+}
+
+void printSwap(const nlohmann::ordered_json& swap) {
+  const std::string from = swap.at("outgoing").get<std::string>();
+  const std::string to = swap.at("incoming").get<std::string>();
+  const std::string reason = swap.at("reason").get<std::string>();
+  std::printf("  step %6llu  %s -> %s", static_cast<unsigned long long>(swap.at("at_step")),
+              from.empty() ? "(brake)" : from.c_str(), to.empty() ? "(brake)" : to.c_str());
+  if (!swap.at("done").get<bool>()) {
+    std::printf(": refused, %s\n", reason.c_str());
+    return;
+  }
+  std::printf(": torques %.2g apart, the joints felt a change of %.2g", largest(swap.at("raw_effort_step")),
+              largest(swap.at("applied_effort_step")));
+  std::printf("%s%s\n", reason.empty() ? "" : "; ", reason.c_str());
+}
+
+}  // namespace
+
+void printResult(const nlohmann::ordered_json& result) {
+  const double elapsed_s = result.at("elapsed_s");
+  std::printf("%s: %s", result.at("scenario").get<std::string>().c_str(),
+              result.at("state").get<std::string>().c_str());
+  if (const std::string reason = result.at("reason"); !reason.empty()) std::printf(" (%s)", reason.c_str());
+  std::printf("\n");
+  if (result.at("startup_s").get<double>() >= 0.0) {
+    std::printf("steps       %llu, %.6g s of motion in %.2f s: %.2f x real time, started in %.2f s\n",
+                static_cast<unsigned long long>(result.at("steps")), result.at("sim_time_s").get<double>(), elapsed_s,
+                result.at("real_time_ratio").get<double>(), result.at("startup_s").get<double>());
+  }
+  if (const std::uint64_t missed = result.at("missed_steps"); missed > 0) {
+    std::printf("missed      %llu steps had to use an old torque\n", static_cast<unsigned long long>(missed));
+  }
+  if (!result.at("swaps").empty()) std::printf("handovers   [N m or N, largest over the joints]\n");
+  for (const auto& swap : result.at("swaps")) printSwap(swap);
+  if (const auto& recording = result.at("recording"); !recording.is_null()) {
+    std::printf("recording   %s\n            %.2f MB, %llu messages, %s\n",
+                recording.at("path").get<std::string>().c_str(), recording.at("bytes").get<double>() / 1e6,
+                static_cast<unsigned long long>(recording.at("messages")),
+                recording.at("complete").get<bool>() ? "complete" : recording.at("summary").get<std::string>().c_str());
+  }
+  std::printf("logs        %s\n", result.at("folder").get<std::string>().c_str());
+}
+
+}  // namespace baton

@@ -1,0 +1,203 @@
+#include "run_commands.hpp"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "cell_client.hpp"
+#include "runtime/paths.hpp"
+#include "runtime/service_options.hpp"
+
+namespace baton {
+namespace {
+
+/// One line on the terminal that is written over; nothing when standard error is a file.
+class ProgressLine {
+ public:
+  void show(const std::string& text) {
+    if (!is_terminal_ || text == last_) return;
+    std::fprintf(stderr, "\r\033[K%s", text.c_str());
+    last_ = text;
+  }
+  ~ProgressLine() {
+    if (!last_.empty()) std::fprintf(stderr, "\r\033[K");
+  }
+
+ private:
+  bool is_terminal_ = isatty(STDERR_FILENO) != 0;
+  std::string last_;
+};
+
+std::string progressText(const std::optional<msg::SimStatus>& status) {
+  if (!status) return "starting";
+  std::array<char, 200> text{};
+  const double time_s = static_cast<double>(status->time_ns()) * 1e-9;
+  switch (status->state()) {
+    case msg::SIM_STATE_STARTING: return std::string("starting: waits for ") + status->waiting_for().c_str();
+    case msg::SIM_STATE_PAUSED:
+      std::snprintf(text.data(), text.size(), "paused at step %llu (%.3f s)",
+                    static_cast<unsigned long long>(status->step()), time_s);
+      break;
+    default: {
+      const bool has_end = status->end_step() > 0 && status->step() > 0;
+      const double done = has_end ? static_cast<double>(status->step()) / static_cast<double>(status->end_step()) : 0.0;
+      const double left_s = has_end ? status->elapsed_s() * (1.0 - done) / done : 0.0;
+      std::snprintf(text.data(), text.size(), "step %llu  %.3f s  %s  %3.0f %%  %.0f s left",
+                    static_cast<unsigned long long>(status->step()), time_s, status->holder().c_str(), done * 100.0,
+                    left_s);
+    }
+  }
+  return text.data();
+}
+
+void addRunOptions(CLI::App& command, RunRequest& request) {
+  command.add_option("scenario", request.scenario, "scenario file, or the name of one that comes with Baton")
+      ->required();
+  addCellOptions(command, request.cell, request.domain);
+  command
+      .add_option("--transport", request.transport,
+                  "udp, or shm: faster, but after kill -9 shared memory leaves files in /dev/shm behind")
+      ->check(CLI::IsMember({"udp", "shm"}))
+      ->capture_default_str();
+  command.add_option("--out", request.out, "file to record to (default: in the run's folder)");
+  command.add_flag("--overwrite", request.overwrite, "replace the file --out names");
+  command.add_flag("--no-recording", request.no_recording, "run without a recorder");
+  command.add_option("--restarts", request.restarts, "how often a controller that dies is started again, to stand by")
+      ->check(CLI::Range(0, 1000));
+}
+
+void up(const RunRequest& request, ExitCode& exit_code) {
+  RunSession session(request, false);
+  ProgressLine line;
+  const std::optional<ExitCode> ended =
+      session.follow([&](const auto& status) { line.show(progressText(status)); },
+                     [](const msg::SimStatus& status) { return status.state() != msg::SIM_STATE_STARTING; });
+  line.show("");
+  if (ended && *ended != ExitCode::kOk) {
+    std::fprintf(stderr, "baton: the run did not start; the end of %s:\n%s", session.logFile().c_str(),
+                 lastLines(session.logFile(), 8).c_str());
+    exit_code = *ended;
+    return;
+  }
+  std::printf("up: run %s in cell %s, domain %d\nlogs %s\n", session.info().run.c_str(), session.info().cell.c_str(),
+              session.info().domain, session.info().folder.c_str());
+  if (!session.info().recording.empty()) std::printf("recording %s\n", session.info().recording.c_str());
+  std::printf("try: baton status | baton controllers | baton swap NAME | baton down\n");
+}
+
+void down(const std::string& cell, int domain, bool json, ExitCode& exit_code) {
+  const RunInfo info = CellClient::find(domain, cell);
+  if (kill(info.supervisor_pid, SIGTERM) != 0) {
+    throw UnavailableError("cannot stop process " + std::to_string(info.supervisor_pid) +
+                           ": it belongs to somebody else");
+  }
+  ProgressLine line;
+  for (int waited_ms = 0; activeRun(domain, cell); waited_ms += 50) {
+    if (waited_ms > 500) line.show("waiting for the recording to be closed");
+    if (waited_ms > 60'000) {
+      throw Error(ExitCode::kFailed, "the run does not end; see " + info.folder +
+                                         "/supervisor.log, and as a last resort kill -9 " +
+                                         std::to_string(info.supervisor_pid) + ", which ends all its processes");
+    }
+    usleep(50'000);
+  }
+  line.show("");
+  const nlohmann::ordered_json result = readResult(info.folder);
+  if (json) {
+    std::cout << result.dump(1) << '\n';
+  } else {
+    printResult(result);
+  }
+  const bool is_complete = result.at("recording").is_null() || result.at("recording").at("complete").get<bool>();
+  exit_code = is_complete ? ExitCode::kOk : ExitCode::kFailed;
+}
+
+void logs(const std::string& cell, int domain, const std::string& service, int lines) {
+  std::filesystem::path folder;
+  if (const std::optional<RunInfo> run = activeRun(domain, cell)) {
+    folder = run->folder;
+  } else {
+    // The newest run there was: folders sort by time.
+    std::error_code nothing_yet;
+    for (const auto& entry : std::filesystem::directory_iterator(stateFolder() / "runs", nothing_yet)) {
+      if (folder.empty() || entry.path() > folder) folder = entry.path();
+    }
+    if (folder.empty()) throw UnavailableError("no run has been started yet: baton up SCENARIO");
+  }
+  std::string names;
+  bool found = false;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".log") continue;
+    const std::string name = entry.path().stem().string();
+    names += (names.empty() ? "" : ", ") + name;
+    if (!service.empty() && name != service) continue;
+    found = true;
+    std::printf("%s\n%s", entry.path().c_str(),
+                lastLines(entry.path().string(), static_cast<std::size_t>(lines)).c_str());
+  }
+  if (!found) throw UsageError("no log of " + service + ": expected one of " + names);
+}
+
+}  // namespace
+
+void addCellOptions(CLI::App& command, std::string& cell, int& domain) {
+  command.add_option("--cell", cell, "cell: one robot with its parts")->check(cellName())->capture_default_str();
+  command.add_option("--domain", domain, "DDS domain")
+      ->check(CLI::Range(0, 232))
+      ->envname("BATON_DOMAIN")
+      ->capture_default_str();
+}
+
+ExitCode runToTheEnd(RunSession& session) {
+  ProgressLine line;
+  const std::optional<ExitCode> ended = session.follow([&](const auto& status) { line.show(progressText(status)); },
+                                                       [](const msg::SimStatus&) { return false; });
+  return ended.value_or(ExitCode::kFailed);
+}
+
+void addRunCommands(CLI::App& app, ExitCode& exit_code) {
+  const auto request = std::make_shared<RunRequest>();
+  const auto json = std::make_shared<bool>(false);
+
+  CLI::App* run_command = app.add_subcommand("run", "run a scenario to its end");
+  addRunOptions(*run_command, *request);
+  run_command->add_flag("--json", *json, "print the result as JSON");
+  run_command->callback([=, &exit_code] {
+    RunSession session(*request, true);
+    exit_code = runToTheEnd(session);
+    const nlohmann::ordered_json result = session.result();
+    if (*json) {
+      std::cout << result.dump(1) << '\n';
+    } else {
+      printResult(result);
+    }
+    if (result.at("state") == "not_started") {
+      std::fprintf(stderr, "baton: the end of %s:\n%s", session.logFile().c_str(),
+                   lastLines(session.logFile(), 8).c_str());
+    }
+  });
+
+  CLI::App* up_command = app.add_subcommand("up", "start a scenario and leave it running");
+  addRunOptions(*up_command, *request);
+  up_command->callback([=, &exit_code] { up(*request, exit_code); });
+
+  CLI::App* down_command = app.add_subcommand("down", "end the run in a cell, in order, and tell how it went");
+  addCellOptions(*down_command, request->cell, request->domain);
+  down_command->add_flag("--json", *json, "print the result as JSON");
+  down_command->callback([=, &exit_code] { down(request->cell, request->domain, *json, exit_code); });
+
+  const auto service = std::make_shared<std::string>();
+  const auto lines = std::make_shared<int>(20);
+  CLI::App* logs_command =
+      app.add_subcommand("logs", "the last lines of a service's log, or of all; of the newest run when none is up");
+  logs_command->add_option("service", *service, "plant, recorder, supervisor, a controller's name, ...");
+  logs_command->add_option("--lines", *lines, "how many")->check(CLI::Range(1, 1'000'000))->capture_default_str();
+  addCellOptions(*logs_command, request->cell, request->domain);
+  logs_command->callback([=] { logs(request->cell, request->domain, *service, *lines); });
+}
+
+}  // namespace baton

@@ -1,0 +1,197 @@
+#include "run_session.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <cstring>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <mutex>
+#include <sstream>
+
+#include "cell_client.hpp"
+#include "runtime/paths.hpp"
+#include "runtime/scenario.hpp"
+#include "runtime/signals.hpp"
+
+namespace baton {
+namespace fs = std::filesystem;
+namespace {
+std::atomic<int> caught_signals{0};
+}  // namespace
+
+/// Ctrl-C and SIGTERM are counted while this lives.
+class RunSession::SignalCounter {
+ public:
+  SignalCounter() {
+    caught_signals = 0;
+    struct sigaction action {};
+    action.sa_handler = [](int) { ++caught_signals; };
+    sigaction(SIGINT, &action, &old_int_);
+    sigaction(SIGTERM, &action, &old_term_);
+  }
+  ~SignalCounter() {
+    sigaction(SIGINT, &old_int_, nullptr);
+    sigaction(SIGTERM, &old_term_, nullptr);
+  }
+  SignalCounter(const SignalCounter&) = delete;
+  SignalCounter& operator=(const SignalCounter&) = delete;
+
+ private:
+  struct sigaction old_int_ {};
+  struct sigaction old_term_ {};
+};
+
+namespace {
+
+/// Starts a program in a session of its own with its output in a log.
+/// When `attached`, the kernel ends it with SIGTERM if this process dies.
+pid_t launch(const fs::path& program, const std::vector<std::string>& arguments, const std::string& log_file,
+             bool attached) {
+  std::vector<char*> argv{const_cast<char*>(program.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  const int log = open(log_file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (log < 0) throw UnavailableError("cannot write " + log_file + ": " + std::strerror(errno));
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid == 0) {
+    setsid();
+    const HeldSignals held;  // until the program is able to end in order; it inherits this over exec
+    if (attached) {
+      prctl(PR_SET_PDEATHSIG, SIGTERM);
+      if (getppid() != parent) _exit(127);  // it died before we asked to be told
+    }
+    const int nothing = open("/dev/null", O_RDONLY);
+    dup2(nothing, STDIN_FILENO);
+    dup2(log, STDOUT_FILENO);
+    dup2(log, STDERR_FILENO);
+    execv(program.c_str(), argv.data());
+    _exit(127);
+  }
+  close(log);
+  if (pid < 0) throw UnavailableError("cannot start " + program.string() + ": " + std::strerror(errno));
+  return pid;
+}
+
+fs::path checkedOut(const RunRequest& request) {
+  const fs::path out = fs::absolute(request.out);
+  if (!fs::is_directory(out.parent_path())) {
+    throw UsageError("--out " + request.out + ": expected a file in an existing folder, and " +
+                     out.parent_path().string() + " is none");
+  }
+  if (fs::exists(out)) {
+    if (!request.overwrite)
+      throw UsageError("--out " + request.out + " exists: choose another name or give --overwrite");
+    fs::remove(out);
+  }
+  return out;
+}
+
+}  // namespace
+
+RunSession::~RunSession() = default;
+
+RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std::make_unique<SignalCounter>()) {
+  info_.scenario = findScenario(request.scenario).string();
+  const Scenario scenario = loadScenario(info_.scenario);  // a mistake in it is told here, not in a log
+  for (const std::string& warning : scenario.warnings) std::fprintf(stderr, "baton: warning: %s\n", warning.c_str());
+  if (const std::optional<RunInfo> other = activeRun(request.domain, request.cell)) {
+    throw UnavailableError("cell " + request.cell + " is in use by run " + other->run + " of " + other->scenario +
+                           ": end it with `baton down --cell " + request.cell + "`, or choose another --cell");
+  }
+  info_.cell = request.cell;
+  info_.domain = request.domain;
+  info_.run = newRunId();
+  info_.transport = request.transport == "shm" ? dds::Transport::kSharedMemory : dds::Transport::kUdp;
+  info_.folder = runFolder(info_.run).string();
+  if (!request.no_recording && scenario.recording.enabled) {
+    info_.recording = request.out.empty() ? info_.folder + "/" + scenario.name + ".mcap" : checkedOut(request).string();
+  } else if (!request.out.empty()) {
+    throw UsageError("--out " + request.out + ": the scenario or --no-recording says not to record");
+  }
+
+  std::vector<std::string> arguments{"--scenario",  info_.scenario,    "--cell",     info_.cell,
+                                     "--run",       info_.run,         "--domain",   std::to_string(info_.domain),
+                                     "--transport", request.transport, "--restarts", std::to_string(request.restarts)};
+  if (info_.recording.empty()) {
+    arguments.emplace_back("--no-recording");
+  } else {
+    arguments.insert(arguments.end(), {"--out", info_.recording});
+  }
+  info_.supervisor_pid = launch(siblingProgram("baton-supervisor"), arguments, logFile(), attached);
+}
+
+std::optional<ExitCode> RunSession::follow(const std::function<void(const std::optional<msg::SimStatus>&)>& progress,
+                                           const std::function<bool(const msg::SimStatus&)>& until) {
+  std::mutex mutex;
+  std::optional<msg::SimStatus> status;
+  dds::Participant participant({.domain = info_.domain,
+                                .partition = info_.cell + "/" + info_.run,
+                                .cell = info_.cell,
+                                .run = info_.run,
+                                .service = "operator-" + std::to_string(getpid()),
+                                .transport = info_.transport});
+  const dds::Reader<msg::SimStatus> reader(participant, dds::topics::kSimStatus,
+                                           [&](const msg::SimStatus& message, const dds::RawSample&) {
+                                             const std::lock_guard lock(mutex);
+                                             status = message;
+                                           });
+  int passed_on = 0;
+  for (;;) {
+    int how = 0;
+    const pid_t ended = waitpid(info_.supervisor_pid, &how, WNOHANG);
+    std::optional<msg::SimStatus> now;
+    {
+      const std::lock_guard lock(mutex);
+      now = status;
+    }
+    if (ended == info_.supervisor_pid) {
+      progress(now);
+      return WIFEXITED(how) ? static_cast<ExitCode>(WEXITSTATUS(how)) : ExitCode::kFailed;
+    }
+    if (passed_on < caught_signals) {
+      passed_on = caught_signals;
+      kill(info_.supervisor_pid, SIGTERM);
+    }
+    progress(now);
+    if (now && until(*now)) return std::nullopt;
+    usleep(50'000);  // how often a person sees progress
+  }
+}
+
+std::string lastLines(const std::string& file, std::size_t count) {
+  std::ifstream stream(file);
+  std::deque<std::string> lines;
+  for (std::string line; std::getline(stream, line);) {
+    lines.push_back("  " + line + "\n");
+    if (lines.size() > count) lines.pop_front();
+  }
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  return text;
+}
+
+nlohmann::ordered_json readResult(const std::string& folder) {
+  return nlohmann::ordered_json::parse(readFile(fs::path(folder) / "result.json"));
+}
+
+nlohmann::ordered_json RunSession::result() const {
+  try {
+    return readResult(info_.folder);
+  } catch (const std::exception&) {
+    throw UnavailableError("the run ended without a result; the end of " + logFile() + ":\n" + lastLines(logFile(), 8));
+  }
+}
+
+}  // namespace baton

@@ -1,0 +1,64 @@
+/// A run started from the command line: launches the supervisor, follows it, reads its result.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "base/error.hpp"
+#include "dds/types.hpp"
+#include "msg/sim.h"
+#include "runtime/cell.hpp"
+
+namespace baton {
+
+struct RunRequest {
+  std::string scenario;  // path or bare name
+  std::string cell = "lab";
+  int domain = 0;
+  std::string transport = "udp";
+  std::string out;  // recording; empty: in the run's folder
+  bool no_recording = false;
+  bool overwrite = false;  // replace `out`
+  int restarts = 0;
+};
+
+/// A supervisor's process. Attached, it ends with this one; detached, it lives on in the background.
+class RunSession {
+ public:
+  /// Checks what can be checked before anything is started and launches the supervisor. Throws UsageError and
+  /// UnavailableError.
+  RunSession(const RunRequest& request, bool attached);
+  ~RunSession();
+  RunSession(const RunSession&) = delete;
+  RunSession& operator=(const RunSession&) = delete;
+
+  /// Follows the run until `until` says so or the supervisor ends. Ctrl-C is passed on to the supervisor, whose orderly
+  /// end is waited for. `progress` is called several times a second with the plant's latest word, if there is one.
+  /// Returns the supervisor's exit code, or nothing when `until` ended it.
+  std::optional<ExitCode> follow(const std::function<void(const std::optional<msg::SimStatus>&)>& progress,
+                                 const std::function<bool(const msg::SimStatus&)>& until);
+
+  /// result.json, once the supervisor has ended. Throws UnavailableError with the end of its log when there is none.
+  [[nodiscard]] nlohmann::ordered_json result() const;
+  [[nodiscard]] const RunInfo& info() const { return info_; }
+  [[nodiscard]] std::string logFile() const { return info_.folder + "/supervisor.log"; }
+
+ private:
+  class SignalCounter;
+  std::unique_ptr<SignalCounter> signals_;  // from before the launch: no Ctrl-C is missed
+  RunInfo info_;
+};
+
+/// result.json of a run folder.
+[[nodiscard]] nlohmann::ordered_json readResult(const std::string& folder);
+
+/// What a person wants to know of a run that has ended.
+void printResult(const nlohmann::ordered_json& result);
+
+/// The last lines of a file, indented; empty when it cannot be read.
+[[nodiscard]] std::string lastLines(const std::string& file, std::size_t count);
+
+}  // namespace baton

@@ -1,0 +1,68 @@
+/// Runs a law: on PlantState(k) and Reference(k), and Contact(k) if the law uses force, its effort for step k. With the
+/// baton it goes out as JointCommand(k); standing by, as ShadowCommand(k): the effort it would command if it received
+/// the baton at k. PlantState.holder says which, so a handover needs no agreement beyond the state itself.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "control/law.hpp"
+#include "runtime/service.hpp"
+#include "time/step_inputs.hpp"
+
+namespace baton {
+
+class LawRunner {
+ public:
+  explicit LawRunner(Service& service);
+
+ private:
+  enum Input : std::size_t { kState, kReference, kContact };
+  template <class T>
+  using Window = std::array<T, StepInputs::kWindow>;
+
+  void onState(const msg::PlantState& message, const dds::RawSample& sample);
+  void onReference(const msg::Reference& message, const dds::RawSample& sample);
+  void onContact(const msg::Contact& message, const dds::RawSample& sample);
+  void onPlan(const msg::SwapPlan& plan);
+  void arrived(Input input, std::uint64_t step);
+  void compute(std::uint64_t step);
+  void evaluate(std::uint64_t step, bool continues);
+  void publish(std::uint64_t step, bool commands);
+  void answerForecast();
+  void publishStatus();
+  [[nodiscard]] bool isIncoming(const msg::SwapPlan& plan) const;
+
+  Service& service_;
+  const ControllerConfig& config_;
+  const LawInfo& info_;
+  std::unique_ptr<Law> law_;
+  StepInputs inputs_;
+  Window<RobotState> states_;
+  Window<bool> holds_{};  // whether PlantState named us
+  Window<Reference> references_;
+  Window<Contact> contacts_;
+  Window<std::array<std::uint64_t, 3>> hashes_{};  // of the payloads, by input
+
+  LawInput input_;
+  JointVector effort_;
+  LawStatus last_status_ = LawStatus::kOk;
+  bool active_ = false;
+  std::uint64_t skipped_ = 0;                   // steps whose inputs were not complete in time
+  bool failing_ = false;                        // the last step gave no effort; reported once
+  std::optional<std::uint64_t> forecast_plan_;  // owed an answer
+  std::uint64_t forecast_step_ = 0;
+  std::optional<std::uint64_t> last_command_step_;  // as outgoing controller: command this step once more
+  Window<JointVector> history_;                     // efforts of the latest steps
+
+  dds::Writer<msg::JointCommand>& command_out_;
+  dds::Writer<msg::JointCommand>& shadow_out_;
+  dds::Writer<msg::SwapAck>& ack_out_;
+  dds::Writer<msg::ControllerStatus>& status_out_;
+  msg::JointCommand message_;
+  msg::SwapAck ack_;
+};
+
+}  // namespace baton

@@ -1,0 +1,21 @@
+/// On PlantState(k): Contact(k), the sum over all walls.
+#pragma once
+
+#include "runtime/service.hpp"
+
+namespace baton {
+
+class WallResponder {
+ public:
+  explicit WallResponder(Service& service);
+
+ private:
+  void onState(const msg::PlantState& message);
+
+  Service& service_;
+  dds::Writer<msg::Contact>& contact_out_;
+  RobotState state_;
+  msg::Contact message_;
+};
+
+}  // namespace baton

@@ -1,0 +1,54 @@
+#include "arm.hpp"
+
+#include "robot/dynamics.hpp"
+#include "robot/simulation.hpp"
+
+namespace baton {
+
+Arm::Arm(const Scenario& scenario)
+    : model_(scenario.robot),
+      step_s_(scenario.stepSeconds()),
+      substeps_(scenario.substeps),
+      blend_steps_(scenario.baton.blend_steps) {
+  state_.q = scenario.start_q;
+  state_.qd = scenario.start_qd;
+  state_.tau_applied = JointVector::Zero(model_.size());
+  updateTip();
+}
+
+void Arm::updateTip() {
+  computeKinematics(model_, state_.q, state_.qd, kinematics_);
+  state_.X_WE = kinematics_.X_WE;
+  state_.V_WE = kinematics_.V_WE;
+}
+
+JointVector Arm::brakeEffort() const {
+  JointVector g;
+  JointMatrix B;
+  gravityEffort(model_, state_.q, g);
+  massMatrix(model_, state_.q, B);
+  JointVector tau = g;
+  tau.noalias() -= kBrakeRate * (B * state_.qd);
+  return tau;
+}
+
+JointVector Arm::blended(std::uint64_t step, const JointVector& effort) const {
+  JointVector tau = effort;
+  blend_.add(step, tau);
+  return tau;
+}
+
+JointVector Arm::holdingEffort(std::uint64_t step) const {
+  return 2.0 * state_.tau_applied - blended(step, state_.tau_applied);
+}
+
+bool Arm::move(const JointVector& tau, const Contact& contact) {
+  JointVector applied = tau;
+  saturateEffort(model_, applied);
+  if (!integrateStep(model_, applied, contact, step_s_, substeps_, state_.q, state_.qd)) return false;
+  state_.tau_applied = applied;
+  updateTip();
+  return true;
+}
+
+}  // namespace baton

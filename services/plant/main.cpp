@@ -1,0 +1,10 @@
+// The plant: the simulated arm, time's master and the judge of who holds the baton.
+#include "plant.hpp"
+#include "runtime/run.hpp"
+
+int main(int argc, char** argv) {
+  return baton::runService(argc, argv, "plant", [](baton::Service& service) {
+    baton::Plant plant(service);
+    return service.run();
+  });
+}

@@ -1,0 +1,337 @@
+#include "plant.hpp"
+
+#include <algorithm>
+
+#include "control/law.hpp"
+
+namespace baton {
+namespace {
+
+ArbiterConfig arbiterConfig(const Scenario& scenario) {
+  const std::vector<std::string> names = controllerNames(scenario);
+  const auto index = [&](const std::string& name) {
+    return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  ArbiterConfig config{.members = {},
+                       .holder = index(scenario.active),
+                       .fallback = {},
+                       .margin_steps = scenario.baton.margin_steps,
+                       .max_effort_step = scenario.baton.max_effort_step,
+                       .end_step = scenario.end_step};
+  for (const ControllerConfig& controller : scenario.controllers) {
+    config.members.push_back({controller.name, findLaw(controller.law).requires_contact});
+  }
+  for (const std::string& name : scenario.baton.fallback) config.fallback.push_back(index(name));
+  return config;
+}
+
+StepMasterConfig masterConfig(const Scenario& scenario) {
+  const bool has_credit = scenario.recording.enabled && scenario.mode == SimMode::kLockstep;
+  return {.end_step = scenario.end_step,
+          .needs_contact = scenario.hasEnvironment(),
+          .credit = has_credit ? scenario.recording.credit_steps : 0};
+}
+
+}  // namespace
+
+Plant::Plant(Service& service)
+    : service_(service),
+      scenario_(service.scenario()),
+      arm_(scenario_),
+      master_(masterConfig(scenario_)),
+      arbiter_(arbiterConfig(scenario_)),
+      pacer_(scenario_.step_ns, scenario_.rate),
+      timer_(service.executor()),
+      effort_(JointVector::Zero(scenario_.robot.size())),
+      outgoing_effort_(effort_),
+      state_out_(service.output(dds::topics::kPlantState, servicesBut(kPlantName, scenario_))),
+      reply_out_(service.output(dds::topics::kSimReply)),
+      status_out_(service.output(dds::topics::kSimStatus, servicesBut(kPlantName, scenario_))),
+      plan_out_(service.output(dds::topics::kSwapPlan, withRecorder(controllerNames(scenario_), scenario_))),
+      outcome_out_(service.output(dds::topics::kSwapOutcome, withRecorder({}, scenario_))) {
+  prepare(state_message_);
+  scheduled_.reserve(scenario_.swaps.size() + kMaxScheduled);
+  for (const PlannedSwap& swap : scenario_.swaps) {
+    scheduled_.push_back({.request_id = 0, .target = memberCalled(swap.to), .at_step = swap.at_step, .force = false});
+  }
+  for (const std::string& name : servicesBut(kPlantName, scenario_)) waited_for_.insert(name);
+
+  if (scenario_.hasEnvironment()) {
+    service.input(dds::topics::kContact, {kEnvironmentName},
+                  [this](const msg::Contact& message, const dds::RawSample& sample) { onContact(message, sample); });
+  }
+  service.input(dds::topics::kJointCommand, controllerNames(scenario_),
+                [this](const msg::JointCommand& message, const dds::RawSample& sample) { onCommand(message, sample); });
+  service.input(dds::topics::kSwapAck, controllerNames(scenario_),
+                [this](const msg::SwapAck& ack, const dds::RawSample&) { onSwapAck(ack); });
+  service.input(dds::topics::kServiceStatus, servicesBut(kPlantName, scenario_),
+                [this](const msg::ServiceStatus& status, const dds::RawSample&) { onServiceStatus(status); });
+  service.input(dds::topics::kSimRequest, {},
+                [this](const msg::SimRequest& request, const dds::RawSample&) { onSimRequest(request); });
+  service.input(dds::topics::kSwapRequest, {},
+                [this](const msg::SwapRequest& request, const dds::RawSample&) { onSwapRequest(request); });
+  if (scenario_.recording.enabled) {
+    service.input(dds::topics::kRecorderStatus, {kRecorderName},
+                  [this](const msg::RecorderStatus& status, const dds::RawSample&) {
+                    master_.recorderAcknowledged(status.acknowledged_step());
+                    proceed();
+                  });
+  }
+  service.onReady([this] {
+    const std::lock_guard lock(service_.mutex());
+    startWhenAllAreReady();
+  });
+  service.every(std::chrono::milliseconds(100), [this] {
+    const std::lock_guard lock(service_.mutex());
+    if (!master_.isOver()) publishStatus();
+    watchLateness();
+  });
+}
+
+std::int64_t Plant::steadyNow() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+int Plant::memberCalled(std::string_view name) const {
+  const auto& members = arbiter_.members();
+  const auto found =
+      std::find_if(members.begin(), members.end(), [&](const ArbiterMember& m) { return m.name == name; });
+  return found == members.end() ? kBrake : static_cast<int>(found - members.begin());
+}
+
+const std::string& Plant::nameOf(int member) const {
+  static const std::string kNobody;
+  return member == kBrake ? kNobody : arbiter_.members()[static_cast<std::size_t>(member)].name;
+}
+
+void Plant::startWhenAllAreReady() {
+  if (master_.phase() != SimPhase::kStarting || !service_.isReady() || !waited_for_.empty()) return;
+  master_.start();
+  started_ns_ = steadyNow();
+  pacer_.anchor(0, started_ns_);
+  arbiter_.open(0);
+  service_.event(msg::SEVERITY_INFO, "start", scenario_.active + " holds the baton");
+  openStep();
+  publishStatus();
+  if (isRealtime()) {
+    armTimer();
+  } else {
+    proceed();
+  }
+}
+
+void Plant::openStep() {
+  const std::uint64_t step = master_.step();
+  service_.at(step);
+  progress_ns_ = steadyNow();
+  contact_hash_ = command_hash_ = outgoing_hash_ = 0;
+  master_.needOutgoing(arbiter_.outgoingAt(step) != kBrake);
+  toMessage(service_.stampOf(step), arm_.state(), nameOf(arbiter_.holder()), chain_hash_, state_message_);
+  state_out_.write(state_message_);
+  state_hash_ = dds::chainHash(0, state_out_.payload());
+  if (arbiter_.holder() == kBrake) {
+    effort_ = arm_.brakeEffort();
+    master_.commandArrived(step);
+  }
+  planSwaps();
+}
+
+void Plant::planSwaps() {
+  // A handover for step K is asked for at K - margin - 1, the last step at which it can be: nothing is blocked until
+  // then.
+  const std::uint64_t at_step = master_.step() + scenario_.baton.margin_steps + 1;
+  for (const HandoverRequest& request : scheduled_) {
+    if (request.at_step == at_step) arbiter_.request(request, master_.step());
+  }
+  std::erase_if(scheduled_, [&](const HandoverRequest& request) { return request.at_step <= at_step; });
+  publishSwapActions();
+}
+
+void Plant::considerSwap() {
+  if (master_.inputsHold() == Hold::kNone) {
+    arbiter_.consider(master_.step(), effort_, contact_.penetration > 0.0);
+    publishSwapActions();
+  }
+  master_.awaitSwap(!isRealtime() && arbiter_.awaits(master_.step()));
+}
+
+void Plant::memberFailed(int member, const char* reason) {
+  const std::uint64_t step = master_.step();
+  const bool was_holder = member == arbiter_.holder();
+  const bool was_outgoing = member == arbiter_.outgoingAt(step);
+  arbiter_.memberFailed(member, step, reason);
+  if (was_holder && !master_.hasCommand()) {
+    effort_ = arm_.holdingEffort(step);  // the open step is its own still: the joints keep their torque for it
+    master_.commandArrived(step);
+  }
+  if (was_outgoing) master_.needOutgoing(false);
+}
+
+void Plant::proceed() {
+  if (isRealtime()) return considerSwap();
+  for (;;) {
+    considerSwap();
+    if (master_.hold() != Hold::kNone) return;
+    if (!pacer_.isDue(master_.step() + 1, steadyNow())) return armTimer();
+    endStep();
+    if (arbiter_.holder() == kBrake && !scenario_.hasEnvironment()) {
+      // Nobody has to answer: the steps would follow each other for ever in this call. Others get their turn in
+      // between.
+      boost::asio::post(service_.executor(), [this] {
+        const std::lock_guard lock(service_.mutex());
+        proceed();
+      });
+      return;
+    }
+  }
+}
+
+void Plant::tick() {
+  if (master_.phase() != SimPhase::kRunning) return;
+  considerSwap();
+  const Hold missing = master_.inputsHold();
+  if (missing == Hold::kNone) {
+    missed_in_a_row_ = 0;
+  } else {
+    ++missed_;
+    const bool give_up = ++missed_in_a_row_ > scenario_.max_missed_steps;
+    if (give_up) {
+      effort_ = arm_.brakeEffort();
+    } else if (!master_.hasCommand()) {
+      effort_ = arm_.holdingEffort(master_.step());
+    }
+    if (give_up && !master_.hasCommand() && missing != Hold::kContact) {
+      service_.event(msg::SEVERITY_ERROR, "missed", nameOf(arbiter_.holder()) + " was silent for too many steps");
+      arbiter_.memberFailed(arbiter_.holder(), master_.step(), "it was silent for too many steps");
+      missed_in_a_row_ = 0;  // counted anew for whoever is next
+    } else if (missed_in_a_row_ == scenario_.max_missed_steps + 1) {
+      service_.event(msg::SEVERITY_WARNING, "missed",
+                     "the environment is silent: the brake holds until it speaks again");
+    }
+  }
+  endStep();
+  armTimer();
+}
+
+void Plant::endStep() {
+  const std::uint64_t step = master_.step();
+  const JointVector tau_before = arm_.state().tau_applied;
+  JointVector raw_step = JointVector::Zero(effort_.size());
+  // A new holder that is late for its first step (realtime) takes over with its first command.
+  const bool takes_over = completed_ && master_.hasCommand();
+  if (takes_over) {
+    // What the joints would have felt at this very step: the outgoing controller's torque, or, when it can give none,
+    // what they felt before. The old blend, if one still runs, is part of it.
+    const bool has_outgoing = master_.hasOutgoingCommand();
+    const JointVector tau_old = has_outgoing ? arm_.blended(step, outgoing_effort_) : tau_before;
+    raw_step = tau_old - effort_;
+    arm_.blendFrom(step, raw_step);
+  }
+  if (!arm_.move(arm_.blended(step, effort_), contact_)) {
+    return abort("the motion is no longer finite: the step may be too long for the law's gains");
+  }
+  const std::array<std::uint64_t, 4> hashes{state_hash_, contact_hash_, outgoing_hash_, command_hash_};
+  chain_hash_ = dds::chainHash(chain_hash_, std::as_bytes(std::span(hashes)));
+  if (takes_over) {
+    msg::SwapOutcome outcome;
+    outcome.request_id(completed_->request_id);
+    outcome.plan_id(completed_->plan_id);
+    outcome.done(true);
+    outcome.outgoing(nameOf(completed_->outgoing));
+    outcome.incoming(nameOf(completed_->incoming));
+    outcome.decided_at_step(completed_->decided_at_step);
+    outcome.at_step(step);
+    outcome.blend_steps(scenario_.baton.blend_steps);
+    assignSequence(raw_step, outcome.raw_effort_step());
+    assignSequence(arm_.state().tau_applied - tau_before, outcome.applied_effort_step());
+    outcome.reason(completed_reason_.data());
+    outcome_out_.write(outcome);
+    completed_.reset();
+  }
+  service_.stepDone(step);
+  master_.advance();
+  service_.at(master_.step());
+  arbiter_.open(master_.step());
+  publishSwapActions();
+  openStep();
+  if (master_.isOver()) {
+    end_reason_ = "reached its end";
+    finish();
+  }
+}
+
+void Plant::finish() {
+  ended_ns_ = steadyNow();
+  arbiter_.runEnded();
+  publishSwapActions();
+  for (const HandoverRequest& request : scheduled_) {
+    HandoverPlan plan;
+    plan.request_id = request.request_id;
+    plan.outgoing = arbiter_.holder();
+    plan.incoming = request.target;
+    plan.decided_at_step = master_.step();
+    plan.at_step = request.at_step;
+    publishOutcome(plan, false, "the run has ended");
+  }
+  scheduled_.clear();
+  publishStatus();
+  service_.stepDone(master_.step());
+  service_.runEnded(master_.step(), true);
+}
+
+void Plant::abort(const std::string& reason) {
+  if (master_.isOver()) return;
+  end_reason_ = reason;
+  service_.event(msg::SEVERITY_ERROR, "abort", reason);
+  master_.abort();
+  finish();
+}
+
+void Plant::armTimer() {
+  const std::optional<std::int64_t> due = pacer_.deadline(master_.step() + 1);
+  if (!due || master_.phase() != SimPhase::kRunning) return;
+  boost::asio::post(service_.executor(), [this, due] {
+    timer_.expires_at(std::chrono::steady_clock::time_point(std::chrono::nanoseconds(*due)));
+    timer_.async_wait([this](const boost::system::error_code& error) {
+      if (error) return;
+      const std::lock_guard lock(service_.mutex());
+      if (isRealtime()) {
+        tick();
+      } else {
+        proceed();
+      }
+    });
+  });
+}
+
+void Plant::watchLateness() {
+  const Hold hold = master_.hold();
+  const bool someone_is_late = hold == Hold::kContact || hold == Hold::kCommand || hold == Hold::kHandover ||
+                               hold == Hold::kSwap || hold == Hold::kRecorder;
+  if (!someone_is_late) {
+    progress_ns_ = steadyNow();
+    return;
+  }
+  const double late_s = static_cast<double>(steadyNow() - progress_ns_) * 1e-9;
+  const std::string who = toString(hold);
+  if (late_s > scenario_.late_after_s && scenario_.late_policy != LatePolicy::kWait) {
+    const int member = hold == Hold::kCommand    ? arbiter_.holder()
+                       : hold == Hold::kHandover ? arbiter_.outgoingAt(master_.step())
+                       : hold == Hold::kSwap     ? arbiter_.awaitedMember(master_.step())
+                                                 : kBrake;
+    if (scenario_.late_policy == LatePolicy::kAbort || member == kBrake) {
+      return abort("the step waits for " + who + ", too long");
+    }
+    service_.event(msg::SEVERITY_ERROR, "late", nameOf(member) + " is silent: it is taken for failed");
+    memberFailed(member, "it was silent for too long");
+    return proceed();
+  }
+  constexpr double kWarnAfter_s = 1.0;
+  if (late_s > kWarnAfter_s && warned_step_ != master_.step()) {
+    warned_step_ = master_.step();
+    service_.event(msg::SEVERITY_WARNING, "late", "the step waits for " + who);
+  }
+}
+
+}  // namespace baton

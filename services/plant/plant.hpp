@@ -1,0 +1,96 @@
+/// The plant as a service. Each step: publish PlantState(k), take Contact(k) and the holder's JointCommand(k), move the
+/// arm, open k + 1. In lockstep the last input to arrive moves the arm, in DDS's receive thread; in realtime a timer
+/// does. The rules are in time/ (StepMaster, BatonArbiter, Pacer); this is their wiring.
+#pragma once
+
+#include <array>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "arm.hpp"
+#include "runtime/service.hpp"
+#include "time/baton_arbiter.hpp"
+#include "time/pacer.hpp"
+#include "time/step_master.hpp"
+
+namespace baton {
+
+class Plant {
+ public:
+  explicit Plant(Service& service);
+
+ private:
+  // What arrives, under the service's lock.
+  void onContact(const msg::Contact& message, const dds::RawSample& sample);
+  void onCommand(const msg::JointCommand& message, const dds::RawSample& sample);
+  void onSimRequest(const msg::SimRequest& request);
+  void onSwapRequest(const msg::SwapRequest& request);
+  void onSwapAck(const msg::SwapAck& ack);
+  void onServiceStatus(const msg::ServiceStatus& status);
+
+  // The run.
+  void startWhenAllAreReady();
+  void proceed();   // lockstep: end every step that may end
+  void tick();      // realtime: end the step because its time is over
+  void endStep();   // move the arm over the open step and open the next
+  void openStep();  // publish the state of the step that has just opened
+  void finish();
+  void abort(const std::string& reason);
+  void memberFailed(int member, const char* reason);
+  void considerSwap();
+  void planSwaps();
+  void publishSwapActions();
+  void publishOutcome(const HandoverPlan& plan, bool done, const char* reason);
+  void publishStatus();
+  void armTimer();
+  void watchLateness();
+
+  [[nodiscard]] int memberCalled(std::string_view name) const;
+  [[nodiscard]] const std::string& nameOf(int member) const;
+  [[nodiscard]] bool isRealtime() const { return scenario_.mode == SimMode::kRealtime; }
+  [[nodiscard]] static std::int64_t steadyNow();
+
+  Service& service_;
+  const Scenario& scenario_;
+  Arm arm_;
+  StepMaster master_;
+  BatonArbiter arbiter_;
+  Pacer pacer_;
+  boost::asio::steady_timer timer_;
+
+  // inputs of the open step
+  Contact contact_;
+  JointVector effort_;           // the holder's
+  JointVector outgoing_effort_;  // at the first step of a handover
+  std::uint64_t contact_hash_ = 0;
+  std::uint64_t command_hash_ = 0;
+  std::uint64_t outgoing_hash_ = 0;
+  std::uint64_t state_hash_ = 0;
+  std::uint64_t chain_hash_ = 0;
+
+  std::set<std::string, std::less<>> waited_for_;  // services not ready yet
+  std::optional<HandoverPlan> completed_;          // took effect at the open step: its outcome follows the motion
+  ReasonText completed_reason_{};
+  static constexpr std::size_t kMaxScheduled = 64;  // asked for by operators, besides those of the scenario
+  std::vector<HandoverRequest> scheduled_;          // handovers for later steps
+  std::uint64_t missed_in_a_row_ = 0;
+  std::uint64_t missed_ = 0;
+  std::int64_t started_ns_ = 0;
+  std::int64_t ended_ns_ = 0;
+  std::int64_t progress_ns_ = 0;  // when the open step opened
+  std::uint64_t warned_step_ = ~std::uint64_t{0};
+  std::string end_reason_;
+
+  dds::Writer<msg::PlantState>& state_out_;
+  dds::Writer<msg::SimReply>& reply_out_;
+  dds::Writer<msg::SimStatus>& status_out_;
+  dds::Writer<msg::SwapPlan>& plan_out_;
+  dds::Writer<msg::SwapOutcome>& outcome_out_;
+  msg::PlantState state_message_;
+};
+
+}  // namespace baton

@@ -1,0 +1,142 @@
+// What arrives at the plant: contacts, commands, the operator's requests, the services' readiness.
+#include <cmath>
+
+#include "plant.hpp"
+
+namespace baton {
+
+void Plant::onContact(const msg::Contact& message, const dds::RawSample& sample) {
+  if (message.step() != master_.step() || master_.hasContact()) return;
+  if (!fromMessage(message, contact_)) return abort("the environment sent a contact that is not finite");
+  contact_hash_ = dds::chainHash(0, sample.payload);
+  master_.contactArrived(message.step());
+  proceed();
+}
+
+void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sample) {
+  if (message.step() != master_.step()) return;
+  const int member = memberCalled(message.controller().c_str());
+  if (member == kBrake) return;
+  const bool from_holder = member == arbiter_.holder() && !master_.hasCommand();
+  const bool from_outgoing = member == arbiter_.outgoingAt(message.step()) && !master_.hasOutgoingCommand();
+  if (!from_holder && !from_outgoing) return;
+
+  JointVector effort;
+  if (!fromMessage(message, scenario_.robot.size(), effort)) {
+    // It never reaches the integrator: the joints keep their torque for this step, and the next one is somebody else's.
+    effort = arm_.holdingEffort(message.step());
+    arbiter_.memberFailed(member, message.step(), "it commanded an effort that is not finite or of the wrong size");
+    service_.event(msg::SEVERITY_ERROR, "bad_command",
+                   nameOf(member) + " commanded an effort that is not finite or of the wrong size");
+  }
+  if (from_holder) {
+    effort_ = effort;
+    command_hash_ = dds::chainHash(0, sample.payload);
+    master_.commandArrived(message.step());
+  } else {
+    outgoing_effort_ = effort;
+    outgoing_hash_ = dds::chainHash(0, sample.payload);
+    master_.outgoingCommandArrived(message.step());
+  }
+  proceed();
+}
+
+void Plant::onServiceStatus(const msg::ServiceStatus& status) {
+  const std::string name = status.name().c_str();
+  const int member = memberCalled(name);
+  if (status.state() == msg::SERVICE_READY) {
+    waited_for_.erase(name);
+    arbiter_.memberReturned(member);
+    startWhenAllAreReady();
+  } else if (status.state() == msg::SERVICE_FAILED && !master_.isOver()) {
+    if (member == kBrake || master_.phase() == SimPhase::kStarting)
+      return abort(name + " failed: " + status.text().c_str());
+    memberFailed(member, status.text().c_str());
+    proceed();
+  }
+}
+
+void Plant::onSimRequest(const msg::SimRequest& request) {
+  if (service_.isOver()) return;
+  msg::SimReply reply;
+  reply.request_id(request.request_id());
+  const auto refuse = [&](const std::string& reason) { reply.reason(reason); };
+  const std::uint64_t step = master_.step();
+  if (master_.isOver()) {
+    refuse("the run is over");
+  } else if (master_.phase() == SimPhase::kStarting) {
+    refuse("the run has not started; `baton down` ends it");
+  } else {
+    switch (request.action()) {
+      case msg::SIM_PAUSE:
+        master_.pause();
+        reply.accepted(true);
+        break;
+      case msg::SIM_RESUME:
+        master_.resume();
+        pacer_.anchor(step, steadyNow());
+        reply.accepted(true);
+        break;
+      case msg::SIM_STEP:
+        if (request.steps() == 0) {
+          refuse("expected at least one step");
+        } else {
+          master_.stepBy(request.steps());
+          pacer_.anchor(step, steadyNow());
+          reply.accepted(true);
+        }
+        break;
+      case msg::SIM_RATE:
+        if (!std::isfinite(request.rate()) || request.rate() < 0.0) {
+          refuse("expected a positive rate, or 0 for as fast as possible");
+        } else if (isRealtime()) {
+          refuse("a realtime run has rate 1");
+        } else {
+          pacer_.setRate(request.rate(), step, steadyNow());
+          reply.accepted(true);
+        }
+        break;
+      case msg::SIM_STOP: reply.accepted(true); break;
+    }
+  }
+  reply.step(step);
+  reply_out_.write(reply);
+  if (request.action() == msg::SIM_STOP && reply.accepted()) {
+    end_reason_ = "stopped by request";
+    master_.finish();
+    return finish();
+  }
+  proceed();
+  armTimer();
+  publishStatus();
+}
+
+void Plant::onSwapRequest(const msg::SwapRequest& request) {
+  if (service_.isOver()) return;
+  const int member = memberCalled(request.target().c_str());
+  if (member == kBrake) {
+    arbiter_.refuseUnknown(request.request_id(), request.target().c_str(), master_.step());
+  } else {
+    arbiter_.request(
+        {.request_id = request.request_id(), .target = member, .at_step = request.at_step(), .force = request.force()},
+        master_.step());
+  }
+  publishSwapActions();
+  proceed();
+}
+
+void Plant::onSwapAck(const msg::SwapAck& ack) {
+  const int member = memberCalled(ack.controller().c_str());
+  if (ack.phase() == msg::SWAP_PREPARE) {
+    JointVector effort;
+    const bool finite = readSequence(ack.effort(), scenario_.robot.size(), effort);
+    const bool ready = ack.ready() && finite;
+    arbiter_.prepareAcknowledged(ack.plan_id(), member, ready, effort,
+                                 ack.ready() && !finite ? "its forecast is not finite" : ack.reason().c_str());
+  } else if (ack.phase() == msg::SWAP_COMMIT) {
+    arbiter_.commitAcknowledged(ack.plan_id(), member);
+  }
+  proceed();
+}
+
+}  // namespace baton

@@ -1,0 +1,122 @@
+#include "ledger.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "dds/hash.hpp"
+
+namespace baton {
+
+bool Ledger::book(const Key& key, std::uint64_t sequence, std::span<const std::byte> payload) {
+  ReceivedStream& stream = streams_[key];
+  if (stream.count > 0 && sequence <= stream.last_sequence) return false;
+  if (stream.count == 0) {
+    stream.first_sequence = sequence;
+  } else {
+    stream.missing += sequence - stream.last_sequence - 1;
+  }
+  stream.last_sequence = sequence;
+  ++stream.count;
+  stream.stream_hash = dds::chainHash(stream.stream_hash, payload);
+  return true;
+}
+
+void Ledger::addManifest(const msg::ServiceManifest& manifest) { manifests_.push_back(manifest); }
+
+bool Ledger::hasManifestOf(const std::string& service) const {
+  return std::any_of(manifests_.begin(), manifests_.end(),
+                     [&](const msg::ServiceManifest& manifest) { return service == manifest.name().c_str(); });
+}
+
+std::vector<std::string> Ledger::unvouched() const {
+  // Only on topics that the run's own services count: operators come and go without a manifest.
+  std::set<std::string> counted;
+  std::set<Key> vouched;
+  for (const msg::ServiceManifest& manifest : manifests_) {
+    for (const msg::StreamManifest& sent : manifest.streams()) {
+      if (services_.contains(manifest.name().c_str())) counted.insert(sent.topic().c_str());
+      vouched.insert({sent.topic().c_str(), dds::Guid{sent.writer()}});
+    }
+  }
+  std::vector<std::string> result;
+  for (const auto& [key, stream] : streams_) {
+    if (counted.contains(key.first) && !vouched.contains(key)) {
+      result.push_back(key.first + ": a writer that ended without a manifest, nobody vouches for its " +
+                       std::to_string(stream.count) + " samples");
+    }
+  }
+  return result;
+}
+
+std::uint64_t Ledger::missing() const {
+  std::uint64_t total = 0;
+  for (const auto& [key, stream] : streams_) total += stream.missing;
+  return total;
+}
+
+std::vector<std::string> Ledger::problemsOf(const msg::ServiceManifest& manifest) const {
+  std::vector<std::string> result;
+  for (const msg::StreamManifest& sent : manifest.streams()) {
+    const std::string topic = sent.topic().c_str();
+    const auto found = streams_.find({topic, dds::Guid{sent.writer()}});
+    const ReceivedStream received = found == streams_.end() ? ReceivedStream{} : found->second;
+    const std::string what = topic + " of " + manifest.name().c_str();
+    if (received.count != sent.count()) {
+      result.push_back(what + ": " + std::to_string(sent.count()) + " samples sent, " + std::to_string(received.count) +
+                       " recorded");
+    } else if (received.stream_hash != sent.stream_hash()) {
+      result.push_back(what + ": the recorded bytes are not those sent");
+    }
+  }
+  return result;
+}
+
+std::vector<std::string> Ledger::problems() const {
+  std::vector<std::string> result;
+  for (const std::string& service : services_) {
+    if (!hasManifestOf(service)) result.push_back(service + " sent no manifest");
+  }
+  for (const msg::ServiceManifest& manifest : manifests_) {
+    for (std::string& problem : problemsOf(manifest)) result.push_back(std::move(problem));
+  }
+  for (std::string& problem : unvouched()) result.push_back(std::move(problem));
+  return result;
+}
+
+bool Ledger::isSettled() const {
+  for (const std::string& service : services_) {
+    if (!hasManifestOf(service) && !given_up_.contains(service)) return false;
+  }
+  for (const msg::ServiceManifest& manifest : manifests_) {
+    if (!problemsOf(manifest).empty()) return false;
+  }
+  return true;
+}
+
+std::string Ledger::certificate() const {
+  nlohmann::ordered_json streams = nlohmann::ordered_json::array();
+  for (const auto& [key, stream] : streams_) {
+    nlohmann::ordered_json row{{"topic", key.first},
+                               {"writer", dds::toString(key.second)},
+                               {"first_sequence", stream.first_sequence},
+                               {"last_sequence", stream.last_sequence},
+                               {"count", stream.count},
+                               {"missing", stream.missing},
+                               {"stream_hash", std::to_string(stream.stream_hash)}};
+    for (const msg::ServiceManifest& manifest : manifests_) {
+      for (const msg::StreamManifest& sent : manifest.streams()) {
+        if (key != Key{sent.topic().c_str(), dds::Guid{sent.writer()}}) continue;
+        row["service"] = manifest.name().c_str();
+        row["sent"] = sent.count();
+        row["sent_hash"] = std::to_string(sent.stream_hash());
+      }
+    }
+    streams.push_back(std::move(row));
+  }
+  const std::vector<std::string> found = problems();
+  const nlohmann::ordered_json text{{"complete", found.empty()}, {"problems", found}, {"streams", streams}};
+  // Names of foreign topics may be any bytes; what is not UTF-8 is replaced, not thrown at.
+  return text.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace baton

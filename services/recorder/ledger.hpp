@@ -1,0 +1,61 @@
+/// What was received from each writer, held against what the writers say they sent: the recording's completeness
+/// certificate.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dds/types.hpp"
+#include "msg/service.h"
+
+namespace baton {
+
+/// One writer on one topic, as received.
+struct ReceivedStream {
+  std::uint64_t first_sequence = 0;
+  std::uint64_t last_sequence = 0;
+  std::uint64_t count = 0;
+  std::uint64_t missing = 0;  // holes between first and last
+  std::uint64_t stream_hash = 0;
+};
+
+class Ledger {
+ public:
+  using Key = std::pair<std::string, dds::Guid>;  // topic, writer
+
+  /// @param services who has to send a manifest at the end.
+  explicit Ledger(std::vector<std::string> services) : services_(services.begin(), services.end()) {}
+
+  /// Books a sample. Returns false for one that came already (it is not to be recorded again).
+  bool book(const Key& key, std::uint64_t sequence, std::span<const std::byte> payload);
+  void addManifest(const msg::ServiceManifest& manifest);
+
+  /// The service has failed: its manifest will not come.
+  void giveUpOn(const std::string& service) { given_up_.insert(service); }
+  /// Nothing more is to be expected: every manifest that still can come has, and every stream they name is here, whole.
+  [[nodiscard]] bool isSettled() const;
+  /// Every service has sent its manifest, every stream is vouched for by one, and is here, whole.
+  [[nodiscard]] bool isComplete() const { return problems().empty(); }
+  /// One sentence for each thing that is missing.
+  [[nodiscard]] std::vector<std::string> problems() const;
+  /// The certificate as JSON text: verdict, problems, one row a stream.
+  [[nodiscard]] std::string certificate() const;
+  [[nodiscard]] std::uint64_t missing() const;
+
+ private:
+  [[nodiscard]] bool hasManifestOf(const std::string& service) const;
+  [[nodiscard]] std::vector<std::string> unvouched() const;
+  [[nodiscard]] std::vector<std::string> problemsOf(const msg::ServiceManifest& manifest) const;
+
+  std::set<std::string> services_;
+  std::set<std::string> given_up_;
+  std::map<Key, ReceivedStream> streams_;
+  std::vector<msg::ServiceManifest> manifests_;  // one a process: a service that was started again has sent two
+};
+
+}  // namespace baton

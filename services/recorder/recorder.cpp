@@ -1,0 +1,271 @@
+#include "recorder.hpp"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "msg/idl_text.hpp"
+#include "run_manifest.hpp"
+
+namespace baton {
+namespace {
+
+constexpr std::size_t kQueueBytes = std::size_t{256} << 20;
+constexpr auto kIdle = std::chrono::milliseconds(10);        // how long a sample may wait before it is written
+constexpr auto kFlush = std::chrono::seconds(1);             // what a killed recorder may take along
+constexpr auto kManifestPatience = std::chrono::seconds(5);  // for what is still on its way when the run has ended
+
+mcap::WriterOptions fileOptions(const RecordingConfig& config) {
+  mcap::WriterOptions options;
+  options.library = "baton " BATON_VERSION;
+  options.compression = config.compression == "none"  ? mcap::Compression::kNone
+                        : config.compression == "lz4" ? mcap::Compression::kLz4
+                                                      : mcap::Compression::kZstd;
+  return options;
+}
+
+mcap::ByteView bytesOf(std::string_view text) { return std::as_bytes(std::span(text)); }
+
+/// The step a payload of the loop belongs to: its first member, behind the encapsulation header.
+std::uint64_t stepOf(std::span<const std::byte> payload) {
+  std::uint64_t step = 0;
+  if (payload.size() < 12) return 0;
+  for (std::size_t i = 0; i < 8; ++i) {
+    const bool little_endian = (payload[1] & std::byte{1}) != std::byte{0};
+    const std::size_t at = 4 + (little_endian ? 7 - i : i);
+    step = (step << 8) | std::to_integer<std::uint64_t>(payload[at]);
+  }
+  return step;
+}
+
+}  // namespace
+
+Recorder::Recorder(Service& service)
+    : service_(service),
+      file_(service.options().out, fileOptions(service.scenario().recording)),
+      queue_(kQueueBytes, 1024),
+      ledger_(servicesBut(kRecorderName, service.scenario())),
+      status_out_(service.output(dds::topics::kRecorderStatus, {kPlantName})) {
+  const Scenario& scenario = service.scenario();
+  // Not the commands: while the brake holds there are none. A writer remembers more steps than the credit, so they are
+  // safe.
+  loop_steps_ = {{dds::topics::kPlantState.name, 0}, {dds::topics::kReference.name, 0}};
+  if (scenario.hasEnvironment()) loop_steps_[dds::topics::kContact.name] = 0;
+  // Metadata and attachments first: even a recording that is cut off says what it is of.
+  file_.addMetadata("baton.run", runManifest(service.options(), scenario));
+  file_.addAttachment("scenario.yaml", "application/yaml", 0, 0, bytesOf(scenario.text));
+  file_.addAttachment("robot.yaml", "application/yaml", 0, 0, bytesOf(scenario.robot_text));
+  requireServices();
+  service.answersNoSteps();
+  service.onEnd([this] { has_run_ended_ = true; });
+  service.participant().watchWriters([this](const dds::DiscoveredWriter& writer) {
+    boost::asio::post(service_.executor(), [this, writer] { writerFound(writer); });
+  });
+  file_thread_ = std::thread([this] { writeFile(); });
+}
+
+Recorder::~Recorder() {
+  queue_.close();
+  if (file_thread_.joinable()) file_thread_.join();
+}
+
+ExitCode Recorder::run() {
+  service_.run();
+  queue_.close();
+  file_thread_.join();
+  return result_;
+}
+
+// --- executor
+// ---------------------------------------------------------------------------------------------------------
+
+void Recorder::requireServices() {
+  const Scenario& scenario = service_.scenario();
+  const std::vector<std::string> controllers = controllerNames(scenario);
+  const auto require = [this](const auto& topic, const std::vector<std::string>& writers) {
+    const std::string name = topic.name;
+    service_.require(
+        name,
+        [this, name] {
+          const std::lock_guard lock(topics_mutex_);
+          std::set<dds::GuidPrefix> matched;
+          for (const auto& known : topics_) {
+            if (known->name == name) matched.merge(known->reader->matched());
+          }
+          return matched;
+        },
+        writers);
+  };
+  require(dds::topics::kPlantState, {kPlantName});
+  require(dds::topics::kSwapPlan, {kPlantName});
+  require(dds::topics::kSwapOutcome, {kPlantName});
+  require(dds::topics::kReference, {kTrajectoryName});
+  if (scenario.hasEnvironment()) require(dds::topics::kContact, {kEnvironmentName});
+  require(dds::topics::kJointCommand, controllers);
+  require(dds::topics::kShadowCommand, controllers);
+  require(dds::topics::kSwapAck, controllers);
+  require(dds::topics::kEvent, servicesBut(kRecorderName, scenario));
+  require(dds::topics::kServiceManifest, servicesBut(kRecorderName, scenario));
+}
+
+void Recorder::writerFound(const dds::DiscoveredWriter& writer) {
+  const std::string partition = service_.options().participant().partition;
+  if (std::find(writer.partitions.begin(), writer.partitions.end(), partition) == writer.partitions.end()) return;
+  const std::lock_guard lock(topics_mutex_);
+  writer_qos_[writer.guid] = writer.qos_text;
+  const bool is_known = std::any_of(topics_.begin(), topics_.end(), [&](const auto& topic) {
+    return topic->name == writer.topic && topic->type == writer.type;
+  });
+  if (is_known) return;
+  const auto index = static_cast<std::uint32_t>(topics_.size());
+  auto topic = std::make_unique<Topic>();
+  topic->name = writer.topic;
+  topic->type = writer.type;
+  try {
+    topic->reader = std::make_unique<dds::RawReader>(
+        service_.participant(),
+        dds::EndpointOptions{.topic = writer.topic,
+                             .type = writer.type,
+                             .profile = writer.transient_local ? dds::Profile::kEvent : dds::Profile::kLoop,
+                             .keyed = writer.keyed,
+                             .exclusive_ownership = writer.exclusive_ownership,
+                             .best_effort = !writer.reliable},
+        [this, index, own = dds::prefixOf(status_out_.raw().guid())](const dds::RawSample& sample) {
+          if (dds::prefixOf(sample.writer) != own && !queue_.push(index, sample)) ++dropped_;
+        },
+        [this] { service_.matchesChanged(); });
+  } catch (const Error& error) {
+    return service_.event(msg::SEVERITY_ERROR, "record", error.what());
+  }
+  topics_.push_back(std::move(topic));
+}
+
+// --- file thread
+// ------------------------------------------------------------------------------------------------------
+
+mcap::StringMap Recorder::channelMetadata(const dds::Guid& writer) const {
+  const std::optional<dds::Peer> peer = service_.participant().peer(dds::prefixOf(writer));
+  mcap::StringMap metadata{{"writer", dds::toString(writer)}, {"service", peer ? peer->service : ""}};
+  if (const auto found = writer_qos_.find(writer); found != writer_qos_.end()) metadata["qos"] = found->second;
+  return metadata;
+}
+
+mcap::ChannelId Recorder::channelOf(const SampleQueue::Entry& entry, const Topic& topic) {
+  const auto found = channels_.find({topic.name, entry.writer});
+  if (found != channels_.end()) return found->second;
+  const auto texts = msg::allIdlTexts();
+  const auto idl =
+      std::find_if(texts.begin(), texts.end(), [&](const auto& text) { return text.type_name == topic.type; });
+  // A type we have no IDL for is kept as bytes under its name.
+  const mcap::SchemaId schema =
+      idl == texts.end() ? mcap::kNoSchema : file_.addSchema(topic.type, "omgidl", bytesOf(idl->text));
+  mcap::StringMap metadata = channelMetadata(entry.writer);
+  metadata["type"] = topic.type;
+  const mcap::ChannelId channel = file_.addChannel(topic.name, "cdr", schema, metadata);
+  channels_[{topic.name, entry.writer}] = channel;
+  return channel;
+}
+
+void Recorder::writeBatch(const SampleQueue::Batch& batch) {
+  const std::lock_guard lock(topics_mutex_);
+  for (const SampleQueue::Entry& entry : batch.entries) {
+    const Topic& topic = *topics_[entry.topic];
+    const auto payload = batch.payload(entry);
+    if (!ledger_.book({topic.name, entry.writer}, entry.sequence, payload)) continue;
+    file_.write(channelOf(entry, topic), static_cast<std::uint32_t>(entry.sequence),
+                static_cast<std::uint64_t>(entry.log_time_ns), static_cast<std::uint64_t>(entry.source_timestamp_ns),
+                payload);
+    if (const auto loop = loop_steps_.find(topic.name); loop != loop_steps_.end()) {
+      loop->second = std::max(loop->second, stepOf(payload));
+    } else if (topic.name == dds::topics::kServiceManifest.name) {
+      msg::ServiceManifest manifest;
+      if (dds::decode(payload, manifest)) ledger_.addManifest(manifest);
+    } else if (topic.name == dds::topics::kServiceStatus.name) {
+      msg::ServiceStatus status;
+      if (dds::decode(payload, status) && status.state() == msg::SERVICE_FAILED)
+        ledger_.giveUpOn(status.name().c_str());
+    }
+  }
+}
+
+void Recorder::acknowledge(bool is_idle) {
+  acknowledged_ = std::min_element(loop_steps_.begin(), loop_steps_.end(), [](const auto& a, const auto& b) {
+                    return a.second < b.second;
+                  })->second;
+  const std::uint64_t credit = service_.scenario().recording.credit_steps;
+  const bool is_due = acknowledged_ >= published_ + std::max<std::uint64_t>(1, credit / 8);
+  if (is_due || (is_idle && acknowledged_ != published_)) {
+    published_ = acknowledged_;
+    publishStatus(msg::RECORDER_RECORDING, "");
+  }
+}
+
+void Recorder::publishStatus(msg::RecorderState state, const std::string& text) {
+  const mcap::WriterStatistics statistics = file_.statistics();
+  msg::RecorderStatus status;
+  status.state(state);
+  status.acknowledged_step(acknowledged_);
+  status.messages(statistics.written_messages);
+  status.bytes(statistics.file_bytes);
+  status.lost(ledger_.missing() + dropped_);
+  status.complete(state == msg::RECORDER_CLOSED && result_ == ExitCode::kOk);
+  status.path(service_.options().out);
+  status.text(text.substr(0, 199));
+  status_out_.write(status);
+}
+
+void Recorder::writeFile() {
+  try {
+    SampleQueue::Batch batch;
+    std::chrono::steady_clock::time_point ended{};
+    std::chrono::steady_clock::time_point flushed = std::chrono::steady_clock::now();
+    publishStatus(msg::RECORDER_RECORDING, "");
+    while (queue_.take(batch, kIdle)) {
+      writeBatch(batch);
+      acknowledge(batch.entries.empty());
+      const auto now = std::chrono::steady_clock::now();
+      if (now - flushed > kFlush) {
+        file_.flush();
+        flushed = now;
+      }
+      if (!has_run_ended_) continue;
+      if (ended == std::chrono::steady_clock::time_point{}) ended = now;
+      if (ledger_.isSettled() || now - ended > kManifestPatience) break;
+    }
+    finishFile();
+  } catch (const std::exception& error) {
+    // What is in the file up to here stays readable; nobody in the loop may wait for more.
+    result_ = ExitCode::kFailed;
+    spdlog::error("recording failed: {}", error.what());
+    acknowledged_ = ~std::uint64_t{0} >> 1;
+    try {
+      publishStatus(msg::RECORDER_FAILED, error.what());
+    } catch (const std::exception&) {
+    }
+    service_.event(msg::SEVERITY_ERROR, "record", std::string("recording failed: ") + error.what());
+  }
+  service_.stop(result_);
+}
+
+void Recorder::finishFile() {
+  const std::vector<std::string> problems = ledger_.problems();
+  const bool is_complete = problems.empty() && dropped_ == 0;
+  std::string summary =
+      is_complete ? "complete" : "incomplete: " + (problems.empty() ? "samples were dropped" : problems.front());
+  file_.addMetadata("baton.certificate", {{"complete", is_complete ? "true" : "false"}, {"summary", summary}});
+  file_.addAttachment("certificate.json", "application/json", 0, 0, bytesOf(ledger_.certificate()));
+  file_.close();
+  result_ = is_complete ? ExitCode::kOk : ExitCode::kFailed;
+  const mcap::WriterStatistics statistics = file_.statistics();
+  spdlog::info("closed path={} messages={} bytes={} {}", service_.options().out, statistics.messages,
+               statistics.file_bytes, summary);
+  for (const std::string& problem : problems) spdlog::warn("incomplete: {}", problem);
+  publishStatus(msg::RECORDER_CLOSED, summary);
+  status_out_.raw().waitForAcknowledgments(1000);
+}
+
+}  // namespace baton

@@ -1,0 +1,78 @@
+/// Records every topic of the cell: finds writers as they appear, takes their samples as raw bytes, and writes one MCAP
+/// file with a completeness certificate. Needs no type but the manifests' and the services' status.
+///
+/// Two threads beside the executor: DDS's receive thread queues samples; `file_thread_` writes them, acknowledges steps
+/// (the plant's credit) and closes the file. Only the latter touches the file, the ledger and the status topic.
+/// The recorder's own topics are not recorded: writing them would change them.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "dds/endpoint.hpp"
+#include "ledger.hpp"
+#include "mcap/writer.hpp"
+#include "runtime/service.hpp"
+#include "sample_queue.hpp"
+
+namespace baton {
+
+class Recorder {
+ public:
+  explicit Recorder(Service& service);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// Records until the run has ended and everything is here, or until asked to stop. Returns kOk for a complete
+  /// recording, kFailed for one that is not.
+  ExitCode run();
+
+ private:
+  struct Topic {
+    std::string name;
+    std::string type;
+    mcap::SchemaId schema = mcap::kNoSchema;
+    std::unique_ptr<dds::RawReader> reader;
+  };
+
+  // executor
+  void writerFound(const dds::DiscoveredWriter& writer);
+  void requireServices();
+  // file thread
+  void writeFile();
+  void writeBatch(const SampleQueue::Batch& batch);
+  void acknowledge(bool is_idle);
+  mcap::ChannelId channelOf(const SampleQueue::Entry& entry, const Topic& topic);
+  void finishFile();
+  void publishStatus(msg::RecorderState state, const std::string& text);
+  [[nodiscard]] mcap::StringMap channelMetadata(const dds::Guid& writer) const;
+
+  Service& service_;
+  mcap::Writer file_;
+  SampleQueue queue_;
+  Ledger ledger_;
+  dds::Writer<msg::RecorderStatus>& status_out_;
+
+  // Topics and writers, found by discovery: added on the executor, read by the file thread.
+  mutable std::mutex topics_mutex_;
+  std::vector<std::unique_ptr<Topic>> topics_;
+  std::map<dds::Guid, std::string> writer_qos_;
+
+  // file thread
+  std::map<Ledger::Key, mcap::ChannelId> channels_;
+  std::map<std::string, std::uint64_t> loop_steps_;  // latest step here, by topic of the loop that has to be complete
+  std::uint64_t acknowledged_ = 0;
+  std::uint64_t published_ = 0;
+
+  std::atomic<std::uint64_t> dropped_{0};
+  std::atomic<bool> has_run_ended_{false};
+  ExitCode result_ = ExitCode::kFailed;
+  std::thread file_thread_;
+};
+
+}  // namespace baton

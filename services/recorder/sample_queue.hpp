@@ -1,0 +1,60 @@
+/// Samples on their way from DDS's receive thread to the thread that writes the file. Bounded; nothing is allocated
+/// once the two halves have grown to what a batch needs.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "dds/types.hpp"
+
+namespace baton {
+
+class SampleQueue {
+ public:
+  struct Entry {
+    std::uint32_t topic = 0;  // the recorder's index
+    std::uint64_t sequence = 0;
+    std::int64_t log_time_ns = 0;
+    std::int64_t source_timestamp_ns = 0;
+    dds::Guid writer;
+    std::size_t offset = 0;  // of the payload in Batch::payloads
+    std::size_t size = 0;
+  };
+  struct Batch {
+    std::vector<Entry> entries;
+    std::vector<std::byte> payloads;
+    [[nodiscard]] std::span<const std::byte> payload(const Entry& entry) const {
+      return std::span(payloads).subspan(entry.offset, entry.size);
+    }
+  };
+
+  /// @param max_bytes payload bytes held before samples are dropped.  @param wake_entries how many entries wake the
+  /// writer before its time.
+  SampleQueue(std::size_t max_bytes, std::size_t wake_entries) : max_bytes_(max_bytes), wake_entries_(wake_entries) {}
+
+  /// Returns false when the queue is full and the sample is dropped. The log time is stamped here, at one place, and
+  /// never decreases.
+  bool push(std::uint32_t topic, const dds::RawSample& sample);
+
+  /// Waits for samples, at most `timeout`, and moves them to `batch` (emptied first). Returns false when the queue is
+  /// closed and empty.
+  bool take(Batch& batch, std::chrono::milliseconds timeout);
+
+  void close();
+
+ private:
+  std::size_t max_bytes_;
+  std::size_t wake_entries_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  Batch pending_;
+  std::int64_t last_log_time_ns_ = 0;
+  bool is_closed_ = false;
+};
+
+}  // namespace baton

@@ -1,0 +1,49 @@
+#include "endpoints.hpp"
+
+#include <sstream>
+
+#include "base/error.hpp"
+
+namespace baton {
+namespace {
+
+/// The recorded QoS: lines of "name: value".
+std::map<std::string, std::string> parseQos(const std::string& text) {
+  std::map<std::string, std::string> values;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (const std::size_t colon = line.find(": "); colon != std::string::npos) {
+      values[line.substr(0, colon)] = line.substr(colon + 2);
+    }
+  }
+  return values;
+}
+
+std::string valueOf(const std::map<std::string, std::string>& values, const std::string& key) {
+  const auto found = values.find(key);
+  return found == values.end() ? "" : found->second;
+}
+
+}  // namespace
+
+dds::EndpointOptions replayEndpoint(const mcap::Channel& channel, const mcap::Schema* schema,
+                                    const std::map<std::string, std::string>& remap) {
+  if (channel.message_encoding != "cdr") {
+    throw UsageError("topic " + channel.topic + ": expected messages in cdr, which DDS carries, found '" +
+                     channel.message_encoding + "'");
+  }
+  std::string type = valueOf(channel.metadata, "type");
+  if (type.empty() && schema != nullptr) type = schema->name;
+  if (type.empty()) throw UsageError("topic " + channel.topic + ": expected the name of its type, found none");
+
+  const std::string new_name = valueOf(remap, channel.topic);
+  const std::map<std::string, std::string> qos = parseQos(valueOf(channel.metadata, "qos"));
+  // Of the lasting profiles kEvent, also for what was a status: it keeps enough to send again whatever gets lost.
+  return {.topic = new_name.empty() ? channel.topic : new_name,
+          .type = type,
+          .profile = valueOf(qos, "durability") == "volatile" ? dds::Profile::kLoop : dds::Profile::kEvent,
+          .keyed = valueOf(qos, "keyed") == "true",
+          .exclusive_ownership = valueOf(qos, "ownership") == "exclusive"};
+}
+
+}  // namespace baton

@@ -1,0 +1,75 @@
+#include "result.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace baton {
+namespace {
+using Json = nlohmann::ordered_json;
+
+const char* stateName(const RunResult& result) {
+  if (result.startup_s < 0.0) return "not_started";
+  if (result.exit_code == ExitCode::kInterrupted) return "stopped";
+  return result.sim.state() == msg::SIM_STATE_FINISHED ? "finished" : "aborted";
+}
+
+Json toJson(const msg::SwapOutcome& swap) {
+  return {{"done", swap.done()},
+          {"outgoing", swap.outgoing().c_str()},
+          {"incoming", swap.incoming().c_str()},
+          {"request_id", swap.request_id()},
+          {"decided_at_step", swap.decided_at_step()},
+          {"at_step", swap.at_step()},
+          {"blend_steps", swap.blend_steps()},
+          {"raw_effort_step", swap.raw_effort_step()},
+          {"applied_effort_step", swap.applied_effort_step()},
+          {"reason", swap.reason().c_str()}};
+}
+
+}  // namespace
+
+void writeResult(const RunInfo& info, const Scenario& scenario, const RunResult& result) {
+  const double sim_time_s = static_cast<double>(result.sim.time_ns()) * 1e-9;
+  Json json{{"run", info.run},
+            {"cell", info.cell},
+            {"domain", info.domain},
+            {"scenario", scenario.name},
+            {"scenario_file", info.scenario},
+            {"folder", info.folder},
+            {"state", stateName(result)},
+            {"exit_code", static_cast<int>(result.exit_code)},
+            {"reason", result.reason},
+            {"step_ns", scenario.step_ns},
+            {"steps", result.sim.step()},
+            {"sim_time_s", sim_time_s},
+            {"elapsed_s", result.sim.elapsed_s()},
+            {"real_time_ratio", result.sim.elapsed_s() > 0.0 ? sim_time_s / result.sim.elapsed_s() : 0.0},
+            {"startup_s", result.startup_s},
+            {"missed_steps", result.sim.missed_steps()},
+            {"chain_hash", std::to_string(result.sim.chain_hash())}};
+  if (info.recording.empty()) {
+    json["recording"] = nullptr;
+  } else {
+    json["recording"] = Json{{"path", info.recording},
+                             {"complete", result.recorder.complete()},
+                             {"summary", result.recorder.text().c_str()},
+                             {"messages", result.recorder.messages()},
+                             {"bytes", result.recorder.bytes()},
+                             {"lost", result.recorder.lost()}};
+  }
+  json["swaps"] = Json::array();
+  for (const msg::SwapOutcome& swap : result.swaps) json["swaps"].push_back(toJson(swap));
+  json["resident_kB"] = result.resident_kB;
+
+  const std::filesystem::path file = std::filesystem::path(info.folder) / "result.json";
+  const std::filesystem::path draft = file.string() + ".new";
+  std::ofstream stream(draft);
+  stream << json.dump(1) << '\n';
+  stream.close();
+  std::error_code error;
+  if (stream) std::filesystem::rename(draft, file, error);
+  if (!stream || error) throw UnavailableError("cannot write " + file.string());
+}
+
+}  // namespace baton

@@ -1,0 +1,241 @@
+#include "supervisor.hpp"
+
+#include <signal.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "result.hpp"
+#include "runtime/paths.hpp"
+
+namespace baton {
+namespace {
+
+/// Exit codes of a service that say it never got going, as opposed to a death in the middle.
+bool isRefusal(const Child::End& end) {
+  return !end.by_signal &&
+         (end.value == static_cast<int>(ExitCode::kUsage) || end.value == static_cast<int>(ExitCode::kUnavailable));
+}
+
+}  // namespace
+
+Supervisor::Supervisor(Service& service, Deployment deployment)
+    : service_(service),
+      deployment_(std::move(deployment)),
+      patience_(service.executor()),
+      sim_out_(service.output(dds::topics::kSimStatus)),
+      request_out_(service.output(dds::topics::kSimRequest)) {
+  service.answersNoSteps();
+  service.onSignal([this] { onSignal(); });
+  service.onEnd([this] { runIsOver(); });
+  service.input(dds::topics::kSimStatus, {},
+                [this](const msg::SimStatus& status, const dds::RawSample&) { onSimStatus(status); });
+  service.input(dds::topics::kRecorderStatus, {},
+                [this](const msg::RecorderStatus& status, const dds::RawSample&) { recorder_ = status; });
+  service.input(dds::topics::kSwapOutcome, {},
+                [this](const msg::SwapOutcome& outcome, const dds::RawSample&) { swaps_.push_back(outcome); });
+}
+
+ExitCode Supervisor::run() {
+  startAll();
+  service_.run();  // what the handlers wrote is ours alone from here on
+  const bool was_refused = std::any_of(swaps_.begin(), swaps_.end(), [](const msg::SwapOutcome& swap) {
+    return swap.request_id() == 0 && !swap.done();
+  });
+  if (was_refused && exit_code_ == ExitCode::kOk) {
+    exit_code_ = ExitCode::kFailed;
+    reason_ = "a handover that the scenario plans was refused";
+  }
+  writeResult(deployment_.info, service_.scenario(),
+              {.exit_code = exit_code_,
+               .reason = reason_,
+               .startup_s = startup_s_,
+               .sim = lastSimStatus(),
+               .recorder = recorder_,
+               .swaps = swaps_,
+               .resident_kB = resident_kB_});
+  return exit_code_;
+}
+
+// --- start
+// ------------------------------------------------------------------------------------------------------------
+
+void Supervisor::startAll() {
+  const Scenario& scenario = service_.scenario();
+  // The recorder first and the plant last: whoever has to listen is there before there is something to hear.
+  if (scenario.recording.enabled) start(kRecorderName, kRecorderName, "");
+  if (scenario.hasEnvironment()) start(kEnvironmentName, kEnvironmentName, "");
+  start(kTrajectoryName, kTrajectoryName, "");
+  for (const ControllerConfig& controller : scenario.controllers) start("controller", controller.name, controller.law);
+  start(kPlantName, kPlantName, "");
+}
+
+void Supervisor::start(const std::string& role, const std::string& name, const std::string& law) {
+  ServiceOptions options = service_.options();
+  options.role = role;
+  options.name = name;
+  options.law = law;
+  options.out = deployment_.info.recording;
+  roles_[name] = role;
+  if (!status_out_.contains(name)) status_out_[name] = &service_.output(dds::topics::kServiceStatus);
+  restarts_left_.try_emplace(name, role == "controller" ? deployment_.restarts : 0);
+  children_.push_back(std::make_unique<Child>(
+      service_.executor(),
+      Child::Command{.name = name,
+                     .program = siblingProgram("baton-" + role),
+                     .arguments = toArguments(options),
+                     .log_file = std::filesystem::path(deployment_.info.folder) / (name + ".log")},
+      [this](Child& child, const Child::End& end) { childEnded(child, end); }));
+  spdlog::info("started service={} pid={}", name, children_.back()->pid());
+}
+
+// --- what happens
+// -----------------------------------------------------------------------------------------------------
+
+void Supervisor::onSimStatus(const msg::SimStatus& status) {
+  sim_ = status;
+  const bool has_begun = status.state() != msg::SIM_STATE_STARTING && status.state() != msg::SIM_STATE_ABORTED;
+  if (startup_s_ < 0.0 && has_begun) {
+    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - started_;
+    startup_s_ = since.count() - status.elapsed_s();
+  }
+}
+
+msg::SimStatus Supervisor::lastSimStatus() {
+  const std::lock_guard lock(service_.mutex());
+  return sim_;
+}
+
+void Supervisor::childEnded(Child& child, const Child::End& end) {
+  spdlog::info("ended service={} pid={} {}", child.name(), child.pid(), end.text());
+  if (stage_ == Stage::kRunning) {
+    childFailed(child, end);
+  } else if (stage_ == Stage::kClosingRecording && child.name() == kRecorderName) {
+    if (end.by_signal || end.value != 0) {
+      if (exit_code_ == ExitCode::kOk) exit_code_ = ExitCode::kFailed;
+      if (reason_.empty()) reason_ = "the recording is not complete";
+    }
+    stopChildren();
+  }
+  if (!anyRunning()) service_.stop();
+}
+
+void Supervisor::childFailed(Child& child, const Child::End& end) {
+  const std::string& name = child.name();
+  const std::string why = name + " ended in the middle of the run: " + end.text();
+  const bool has_started = startup_s_ >= 0.0;
+  service_.event(msg::SEVERITY_ERROR, "child_exit", why);
+
+  msg::ServiceStatus failed;  // the plant decides what it means for the run
+  failed.name(name);
+  failed.role(roles_[name]);
+  failed.state(msg::SERVICE_FAILED);
+  failed.pid(child.pid());
+  failed.text(end.text());
+  {
+    const std::lock_guard lock(service_.mutex());
+    status_out_.at(name)->write(failed);
+  }
+  if (roles_[name] == "controller" && has_started) {
+    // The plant goes on without it: the baton is somebody else's by now.
+    spdlog::error("{}\n{}", why, tailOf(child.command().log_file, 5));
+    exit_code_ = ExitCode::kFailed;
+    reason_ = why;
+    if (restarts_left_[name]-- > 0) start("controller", name, service_.scenario().controller(name).law);
+    return;
+  }
+  exit_code_ = isRefusal(end) ? static_cast<ExitCode>(end.value) : ExitCode::kFailed;
+  reason_ =
+      has_started ? why : name + " could not start (" + end.text() + "): " + lastErrorOf(child.command().log_file);
+  spdlog::error("{}\n{}", reason_, tailOf(child.command().log_file, 5));
+  if (name == kPlantName) {
+    // Nobody else would end the run for the others. Written without the lock: our own reader is called from within.
+    msg::SimStatus last = lastSimStatus();
+    last.state(msg::SIM_STATE_ABORTED);
+    last.reason(reason_.substr(0, 199));
+    sim_out_.write(last);
+    const std::lock_guard lock(service_.mutex());
+    sim_ = last;
+    service_.runEnded(last.step(), false);
+  } else if (!has_started || name == kRecorderName) {
+    runIsOver();
+  } else {
+    enter(Stage::kRunning, std::chrono::seconds(5));  // for the plant to say that the run has ended
+  }
+}
+
+void Supervisor::onSignal() {
+  if (stage_ != Stage::kRunning) return;  // ending already
+  if (exit_code_ == ExitCode::kOk) exit_code_ = ExitCode::kInterrupted;
+  if (reason_.empty()) reason_ = "stopped from outside";
+  spdlog::info("stopping the run");
+  if (!isRunning(kPlantName) || startup_s_ < 0.0) return runIsOver();
+  msg::SimRequest request;
+  request.request_id(static_cast<std::uint64_t>(getpid()));
+  request.action(msg::SIM_STOP);
+  {
+    const std::lock_guard lock(service_.mutex());
+    request_out_.write(request);
+  }
+  enter(Stage::kRunning, std::chrono::seconds(3));
+}
+
+// --- the end
+// ----------------------------------------------------------------------------------------------------------
+
+void Supervisor::enter(Stage stage, std::chrono::seconds patience) {
+  stage_ = stage;
+  patience_.expires_after(patience);
+  patience_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) giveUpWaiting();
+  });
+}
+
+void Supervisor::giveUpWaiting() {
+  switch (stage_) {
+    case Stage::kRunning: spdlog::warn("the plant does not end the run"); return runIsOver();
+    case Stage::kClosingRecording: spdlog::warn("the recorder does not close its file"); return stopChildren();
+    case Stage::kStopping:
+      for (const auto& child : children_) {
+        if (child->isRunning()) spdlog::warn("killing service={} pid={}", child->name(), child->pid());
+        child->signal(SIGCONT);
+        child->signal(SIGKILL);
+      }
+      return;
+  }
+}
+
+void Supervisor::runIsOver() {
+  if (stage_ != Stage::kRunning) return;
+  if (const msg::SimStatus last = lastSimStatus(); last.state() == msg::SIM_STATE_ABORTED) {
+    if (exit_code_ == ExitCode::kOk) exit_code_ = ExitCode::kAborted;
+    if (reason_.empty()) reason_ = last.reason().c_str();
+  }
+  for (const auto& child : children_) {
+    if (child->isRunning()) resident_kB_[child->name()] = child->residentKilobytes();
+  }
+  // A run that never started has nobody who would end it: the recorder is told like everybody else.
+  if (isRunning(kRecorderName) && startup_s_ >= 0.0) {
+    enter(Stage::kClosingRecording, std::chrono::seconds(15));
+  } else {
+    stopChildren();
+  }
+}
+
+void Supervisor::stopChildren() {
+  enter(Stage::kStopping, std::chrono::seconds(3));
+  for (const auto& child : children_) child->signal(SIGTERM);
+  if (!anyRunning()) service_.stop();
+}
+
+bool Supervisor::anyRunning() const {
+  return std::any_of(children_.begin(), children_.end(), [](const auto& child) { return child->isRunning(); });
+}
+
+bool Supervisor::isRunning(const std::string& name) const {
+  return std::any_of(children_.begin(), children_.end(),
+                     [&](const auto& child) { return child->name() == name && child->isRunning(); });
+}
+
+}  // namespace baton

@@ -1,0 +1,73 @@
+/// A run from its first process to its last. Starts what the scenario names, tells the plant when one of them dies,
+/// waits for the recording to be closed, ends the rest, and writes result.json into the run's folder.
+#pragma once
+
+#include <atomic>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "child.hpp"
+#include "runtime/cell.hpp"
+#include "runtime/service.hpp"
+
+namespace baton {
+
+struct Deployment {
+  RunInfo info;
+  int restarts = 0;  // how often a controller that dies is started again, to stand by
+};
+
+class Supervisor {
+ public:
+  Supervisor(Service& service, Deployment deployment);
+
+  /// Until the run is over and every child is gone.
+  ExitCode run();
+
+ private:
+  enum class Stage { kRunning, kClosingRecording, kStopping };
+
+  void startAll();
+  void start(const std::string& role, const std::string& name, const std::string& law);
+  void childEnded(Child& child, const Child::End& end);
+  void childFailed(Child& child, const Child::End& end);
+  void onSimStatus(const msg::SimStatus& status);
+  [[nodiscard]] msg::SimStatus lastSimStatus();
+  void onSignal();
+  void runIsOver();
+  void stopChildren();
+  void enter(Stage stage, std::chrono::seconds patience);
+  void giveUpWaiting();
+  [[nodiscard]] bool anyRunning() const;
+  [[nodiscard]] bool isRunning(const std::string& name) const;
+
+  Service& service_;
+  Deployment deployment_;
+  std::map<std::string, std::string> roles_;  // of services, by name
+  std::map<std::string, int> restarts_left_;
+  std::vector<std::unique_ptr<Child>> children_;
+  boost::asio::steady_timer patience_;
+  Stage stage_ = Stage::kRunning;
+  ExitCode exit_code_ = ExitCode::kOk;
+  std::string reason_;
+
+  // What happened, for the result. The samples come under the service's lock.
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  std::atomic<double> startup_s_{-1.0};
+  msg::SimStatus sim_;
+  msg::RecorderStatus recorder_;
+  std::vector<msg::SwapOutcome> swaps_;
+  std::map<std::string, long> resident_kB_;
+
+  // On behalf of a child that died; a writer each, so that no death replaces another's word.
+  std::map<std::string, dds::Writer<msg::ServiceStatus>*> status_out_;
+  dds::Writer<msg::SimStatus>& sim_out_;  // on behalf of a plant that died
+  dds::Writer<msg::SimRequest>& request_out_;
+};
+
+}  // namespace baton

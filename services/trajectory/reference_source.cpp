@@ -1,0 +1,30 @@
+#include "reference_source.hpp"
+
+namespace baton {
+ReferenceSource::ReferenceSource(Service& service)
+    : service_(service),
+      trajectory_(service.scenario().robot, service.scenario().trajectory),
+      reference_out_(service.output(dds::topics::kReference,
+                                    withRecorder(controllerNames(service.scenario()), service.scenario()))) {
+  prepare(message_);
+  service.input(dds::topics::kPlantState, {kPlantName},
+                [this](const msg::PlantState& message, const dds::RawSample&) { onState(message); });
+}
+
+void ReferenceSource::onState(const msg::PlantState& message) {
+  if (service_.isOver()) return;
+  if (!started_) publish(message.step());
+  started_ = true;
+  publish(message.step() + 1);
+  service_.at(message.step());
+  service_.stepDone(message.step());
+}
+
+void ReferenceSource::publish(std::uint64_t step) {
+  const StepStamp stamp = service_.stampOf(step);
+  trajectory_.evaluate(static_cast<double>(stamp.time_ns) * 1e-9, reference_);
+  toMessage(stamp, reference_, message_);
+  reference_out_.write(message_);
+}
+
+}  // namespace baton

@@ -1,0 +1,26 @@
+/// On PlantState(k): Reference(k + 1), so that it waits for the controllers and not they for it. The first state seen
+/// is also answered with its own reference, which nobody could have sent before.
+#pragma once
+
+#include "runtime/service.hpp"
+#include "trajectory/trajectory.hpp"
+
+namespace baton {
+
+class ReferenceSource {
+ public:
+  explicit ReferenceSource(Service& service);
+
+ private:
+  void onState(const msg::PlantState& message);
+  void publish(std::uint64_t step);
+
+  Service& service_;
+  Trajectory trajectory_;
+  dds::Writer<msg::Reference>& reference_out_;
+  Reference reference_;
+  msg::Reference message_;
+  bool started_ = false;
+};
+
+}  // namespace baton

@@ -1,0 +1,264 @@
+// Faults on real processes: whoever dies, the run ends with a word, nobody is left behind, and the recording can be
+// read.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "mcap/reader.hpp"
+#include "support/processes.hpp"
+#include "support/recordings.hpp"
+#include "support/short_contact.hpp"
+
+namespace baton::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The short scenario without an end, as fast as possible.
+std::string endless(const std::string& extra = "") {
+  std::string text = shortContact();
+  const std::string duration = "duration_s: 0.5\n";
+  text.erase(text.find(duration), duration.size());
+  text.erase(text.find("swaps:"));  // the last key
+  return text + extra;
+}
+
+struct LiveRun {
+  LiveRun(const Bench& bench, const std::string& scenario, const std::vector<std::string>& options = {})
+      : bench_(bench) {
+    recording = (bench.folder() / "live.mcap").string();
+    std::vector<std::string> arguments{"up", bench.write("live.yaml", scenario), "--out", recording};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Finished up = bench.baton(arguments);
+    EXPECT_EQ(up.exit_code, 0) << up.out << up.err;
+    status = bench.batonJson({"status", "--json"});
+  }
+  [[nodiscard]] int pidOf(const std::string& service) const {
+    for (const auto& one : status.at("services")) {
+      if (one.at("name") == service) return one.at("pid");
+    }
+    return -1;
+  }
+  void waitForStep(std::uint64_t step) const {
+    EXPECT_TRUE(eventually([&] { return bench_.batonJson({"status", "--json"}).at("step") >= step; }));
+  }
+  [[nodiscard]] fs::path folder() const { return bench_.folder() / "runs" / status.at("run").get<std::string>(); }
+  /// Waits for the run to be over and returns its result.
+  [[nodiscard]] nlohmann::json result() const {
+    EXPECT_TRUE(eventually([&] { return fs::exists(folder() / "result.json"); }));
+    EXPECT_TRUE(eventually([&] { return processesWith(bench_.folder().string()).empty(); }));
+    return nlohmann::json::parse(std::ifstream(folder() / "result.json"));
+  }
+
+  const Bench& bench_;
+  std::string recording;
+  nlohmann::json status;
+};
+
+class KilledService : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(KilledService, EndsTheRunWithAWordAndLeavesNothingBehind) {
+  const Bench bench;
+  const LiveRun run(bench, endless());
+  run.waitForStep(200);
+  const int pid = run.pidOf(GetParam());
+  ASSERT_GT(pid, 0);
+  ASSERT_EQ(kill(pid, SIGKILL), 0);
+
+  const nlohmann::json result = run.result();
+  EXPECT_NE(result.at("exit_code"), 0);
+  EXPECT_NE(result.at("reason").get<std::string>().find(GetParam()), std::string::npos) << result;
+  // The cell is free again, and the recording up to the end is there.
+  EXPECT_EQ(bench.baton({"status"}).exit_code, 3);
+  const mcap::Reader reader(run.recording);
+  EXPECT_GT(reader.statistics().message_count, 0U);
+  EXPECT_EQ(reader.info().is_complete, GetParam() != "recorder");
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, KilledService, ::testing::Values("plant", "environment", "trajectory", "recorder"),
+                         [](const auto& service) { return service.param; });
+
+TEST(Fault, AKilledSupervisorTakesItsProcessesAlong) {
+  const Bench bench;
+  const LiveRun run(bench, endless());
+  run.waitForStep(200);
+  const nlohmann::json cell =
+      nlohmann::json::parse(std::ifstream(bench.folder() / "cells" / (std::to_string(bench.domain()) + "-lab.json")));
+  ASSERT_EQ(kill(cell.at("supervisor_pid").get<int>(), SIGKILL), 0);
+  EXPECT_TRUE(eventually([&] { return processesWith(bench.folder().string()).empty(); }));
+  EXPECT_EQ(bench.baton({"status"}).exit_code, 3);
+  EXPECT_GT(mcap::Reader(run.recording).statistics().message_count, 0U);
+  // And the cell can be used at once.
+  EXPECT_EQ(bench.baton({"run", bench.write("short.yaml", shortContact())}).exit_code, 0);
+}
+
+TEST(Fault, CtrlCEndsARunInOrder) {
+  Bench bench;
+  const std::string recording = (bench.folder() / "stopped.mcap").string();
+  const int pid = bench.start(
+      "baton",
+      {"run", bench.write("live.yaml", endless()), "--out", recording, "--domain", std::to_string(bench.domain())},
+      "run.log");
+  ASSERT_TRUE(eventually([&] {
+    const Finished status = bench.baton({"status", "--json"});
+    return status.exit_code == 0 && nlohmann::json::parse(status.out).at("step") > 100;
+  }));
+  kill(pid, SIGINT);
+  EXPECT_EQ(bench.wait(pid), 130);
+  EXPECT_TRUE(processesWith(bench.folder().string()).empty());
+  const mcap::Reader reader(recording);
+  EXPECT_TRUE(reader.info().is_complete);
+  EXPECT_EQ(bench.baton({"bag", "info", recording}).exit_code, 0);
+}
+
+TEST(Fault, AHolderThatDiesLosesTheBatonToTheFallback) {
+  const Bench bench;
+  const LiveRun run(bench, endless("baton: {fallback: [force, pd]}\n"));
+  run.waitForStep(200);
+  // Only what is fit may take over: force out of contact is not, and in contact it is.
+  ASSERT_EQ(kill(run.pidOf("tracking"), SIGKILL), 0);
+  EXPECT_TRUE(eventually([&] {
+    const std::string holder = bench.batonJson({"status", "--json"}).at("holder");
+    return holder == "force" || holder == "pd";
+  }));
+  const nlohmann::json before = bench.batonJson({"status", "--json"});
+  run.waitForStep(before.at("step").get<std::uint64_t>() + 200);
+  const nlohmann::json result = bench.batonJson({"down", "--json"});
+  ASSERT_EQ(result.at("swaps").size(), 1U) << result;
+  const auto& swap = result.at("swaps").at(0);
+  EXPECT_TRUE(swap.at("done"));
+  EXPECT_EQ(swap.at("outgoing"), "tracking");
+  EXPECT_NE(swap.at("reason").get<std::string>().find("failover"), std::string::npos);
+  for (const double change : swap.at("applied_effort_step")) EXPECT_LT(std::abs(change), 0.5);
+}
+
+TEST(Fault, ASecondPlantInTheRunGivesWay) {
+  Bench bench;
+  const LiveRun run(bench, endless());
+  const int second = bench.start("baton-plant",
+                                 {"--scenario", (bench.folder() / "live.yaml").string(), "--run",
+                                  run.status.at("run").get<std::string>(), "--domain", std::to_string(bench.domain())},
+                                 "second.log");
+  EXPECT_EQ(bench.wait(second), 3);
+  const std::uint64_t step = bench.batonJson({"status", "--json"}).at("step");
+  run.waitForStep(step + 100);
+  EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
+}
+
+TEST(Fault, ALeftOverPlantKeepsItsCell) {
+  Bench bench;
+  // A plant of an earlier run that waits for services that are gone; run ids sort by time.
+  const std::string scenario = bench.write("short.yaml", shortContact());
+  const int old = bench.start(
+      "baton-plant",
+      {"--scenario", scenario, "--run", "20000101-000000-0000", "--domain", std::to_string(bench.domain())}, "old.log");
+  const Finished refused = bench.baton({"run", scenario});
+  EXPECT_EQ(refused.exit_code, 3) << refused.out << refused.err;
+  EXPECT_NE((refused.out + refused.err).find("20000101-000000-0000"), std::string::npos) << refused.out << refused.err;
+  // Another cell is free, and so is this one once the process is gone.
+  EXPECT_EQ(bench.baton({"run", scenario, "--cell", "other"}).exit_code, 0);
+  kill(old, SIGTERM);
+  EXPECT_EQ(bench.wait(old), 0);
+  EXPECT_EQ(bench.baton({"run", scenario}).exit_code, 0);
+}
+
+TEST(Fault, ALeftOverControllerOfAnotherRunIsNotHeard) {
+  Bench bench;
+  const std::string scenario = bench.write("short.yaml", shortContact());
+  std::ignore = bench.start("baton-controller",
+                            {"--scenario", scenario, "--name", "tracking", "--run", "20000101-000000-0000", "--domain",
+                             std::to_string(bench.domain())},
+                            "old.log");
+  EXPECT_EQ(bench.baton({"run", scenario}).exit_code, 0);
+}
+
+TEST(Fault, ADeadControllerIsStartedAgainToStandBy) {
+  const Bench bench;
+  const LiveRun run(bench, endless("rate: 1\nbaton: {fallback: [impedance]}\n"), {"--restarts", "1"});
+  const int before = run.pidOf("pd");
+  ASSERT_EQ(kill(before, SIGKILL), 0);
+  EXPECT_TRUE(eventually([&] {
+    const nlohmann::json now = bench.batonJson({"status", "--json"});
+    for (const auto& service : now.at("services")) {
+      if (service.at("name") == "pd" && service.at("pid") != before && service.at("state") == "ready") return true;
+    }
+    return false;
+  }));
+  EXPECT_TRUE(eventually([&] {
+    for (const auto& controller : bench.batonJson({"controllers", "--json"})) {
+      if (controller.at("name") == "pd" && controller.at("state") == "standby") return true;
+    }
+    return false;
+  }));
+  // It can hold the baton again, and the certificate does not vouch for what the dead process sent.
+  EXPECT_TRUE(bench.batonJson({"swap", "pd", "--json"}).at("done"));
+  const nlohmann::json result = bench.batonJson({"down", "--json"});
+  EXPECT_FALSE(result.at("recording").at("complete"));
+  EXPECT_NE(result.at("reason").get<std::string>().find("pd"), std::string::npos) << result;
+}
+
+TEST(Fault, WithoutAFallbackTheBrakeHolds) {
+  const Bench bench;
+  const LiveRun run(bench, endless());
+  run.waitForStep(200);
+  ASSERT_EQ(kill(run.pidOf("tracking"), SIGKILL), 0);
+  EXPECT_TRUE(eventually([&] { return bench.batonJson({"status", "--json"}).at("holder") == ""; }));
+  // Further than the recorder's credit: nothing waits for commands that nobody sends.
+  run.waitForStep(bench.batonJson({"status", "--json"}).at("step").get<std::uint64_t>() + 1000);
+  // The brake holds the arm where it is.
+  EXPECT_TRUE(bench.batonJson({"swap", "impedance", "--json"}).at("done"));
+  const nlohmann::json result = bench.batonJson({"down", "--json"});
+  EXPECT_EQ(result.at("exit_code"), 1);
+  EXPECT_NE(result.at("reason").get<std::string>().find("tracking"), std::string::npos) << result;
+}
+
+TEST(Fault, AKilledRecorderLeavesWhatItHasShown) {
+  const Bench bench;
+  const LiveRun run(bench, endless());
+  run.waitForStep(200);
+  ASSERT_EQ(bench.baton({"sim", "pause"}).exit_code, 0);
+  std::uint64_t shown = 0;
+  EXPECT_TRUE(eventually([&] {
+    shown = bench.batonJson({"record", "status", "--json"}).at("messages");
+    return shown > 1000;
+  }));
+  ASSERT_EQ(kill(run.pidOf("recorder"), SIGKILL), 0);
+  std::ignore = run.result();
+  EXPECT_GE(mcap::Reader(run.recording).statistics().message_count, shown);
+}
+
+/// Ctrl-C when so many of the run's processes are there: from the very first to all of them.
+class EarlyCtrlC : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(EarlyCtrlC, LeavesNothingBehind) {
+  Bench bench;
+  const std::string scenario = bench.write("live.yaml", endless());
+  const int pid = bench.start("baton", {"run", scenario, "--domain", std::to_string(bench.domain())}, "run.log");
+  ASSERT_TRUE(eventually([&] { return processesWith(bench.folder().string()).size() >= GetParam(); }));
+  kill(pid, SIGINT);
+  EXPECT_EQ(bench.wait(pid), 130);
+  EXPECT_TRUE(eventually([&] { return processesWith(bench.folder().string()).empty(); }));
+  EXPECT_EQ(bench.baton({"status"}).exit_code, 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Processes, EarlyCtrlC, ::testing::Values(1, 2, 3, 6, 9));
+
+TEST(Fault, AServiceThatCannotStartIsNamed) {
+  const Bench bench;
+  // The recording cannot be made: the folder goes away between the check and the start, as on a full or read-only disk.
+  const std::string scenario = bench.write("short.yaml", shortContact());
+  const Finished finished = runProgram(programFolder() / "baton-supervisor",
+                                       {"--scenario", scenario, "--domain", std::to_string(bench.domain()), "--out",
+                                        (bench.folder() / "missing/run.mcap").string()},
+                                       bench.folder());
+  EXPECT_EQ(finished.exit_code, 3) << finished.err;
+  EXPECT_NE(finished.err.find("recorder could not start"), std::string::npos) << finished.err;
+  EXPECT_NE(finished.err.find("missing/run.mcap"), std::string::npos) << finished.err;
+  EXPECT_TRUE(processesWith(bench.folder().string()).empty());
+}
+
+}  // namespace
+}  // namespace baton::test

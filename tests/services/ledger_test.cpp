@@ -1,0 +1,220 @@
+/// The recording's completeness certificate: what came held against what was sent.
+#include "ledger.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "dds/hash.hpp"
+
+namespace baton {
+namespace {
+
+using Json = nlohmann::json;
+
+dds::Guid guidOf(std::uint8_t id) {
+  dds::Guid guid;
+  guid.bytes.fill(id);
+  return guid;
+}
+
+std::vector<std::byte> payloadOf(std::uint64_t number) {
+  const auto bytes = std::as_bytes(std::span(&number, 1));
+  return {bytes.begin(), bytes.end()};
+}
+
+/// One writer of one topic, and its own account of what it sent.
+struct Sender {
+  std::string topic;
+  dds::Guid guid;
+  std::uint64_t count = 0;
+  std::uint64_t hash = 0;
+
+  std::vector<std::byte> send() {
+    std::vector<std::byte> payload = payloadOf(++count);
+    hash = dds::chainHash(hash, payload);
+    return payload;
+  }
+  [[nodiscard]] Ledger::Key key() const { return {topic, guid}; }
+};
+
+msg::ServiceManifest manifestOf(const std::string& service, const std::vector<const Sender*>& senders) {
+  msg::ServiceManifest manifest;
+  manifest.name(service);
+  for (const Sender* sender : senders) {
+    msg::StreamManifest stream;
+    stream.topic(sender->topic);
+    stream.writer(sender->guid.bytes);
+    stream.first_sequence(sender->count > 0 ? 1 : 0);
+    stream.last_sequence(sender->count);
+    stream.count(sender->count);
+    stream.stream_hash(sender->hash);
+    manifest.streams().push_back(stream);
+  }
+  return manifest;
+}
+
+bool mentions(const std::vector<std::string>& sentences, const std::string& words) {
+  return std::any_of(sentences.begin(), sentences.end(),
+                     [&](const std::string& s) { return s.find(words) != std::string::npos; });
+}
+
+class LedgerTest : public testing::Test {
+ protected:
+  /// Sends `count` samples and books those that `arrives` lets through.
+  template <class Arrives>
+  void transmit(Sender& sender, std::uint64_t count, Arrives arrives) {
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::vector<std::byte> payload = sender.send();
+      if (!arrives(sender.count)) continue;
+      EXPECT_TRUE(ledger_.book(sender.key(), sender.count, payload)) << sender.count;
+    }
+  }
+  void transmit(Sender& sender, std::uint64_t count) {
+    transmit(sender, count, [](std::uint64_t) { return true; });
+  }
+  [[nodiscard]] Json certificate() const { return Json::parse(ledger_.certificate()); }
+
+  Sender state_{"plant_state", guidOf(1)};
+  Sender status_{"sim_status", guidOf(2)};
+  Sender contact_{"contact", guidOf(3)};
+  Ledger ledger_{{"plant", "environment"}};
+};
+
+TEST_F(LedgerTest, ARunThatArrivedWholeIsComplete) {
+  transmit(state_, 100);
+  transmit(contact_, 100);
+  EXPECT_FALSE(ledger_.isSettled());
+  ledger_.addManifest(manifestOf("plant", {&state_, &status_}));  // status_ sent nothing
+  ledger_.addManifest(manifestOf("environment", {&contact_}));
+  EXPECT_TRUE(ledger_.isSettled());
+  EXPECT_TRUE(ledger_.isComplete());
+  EXPECT_TRUE(ledger_.problems().empty());
+  EXPECT_EQ(ledger_.missing(), 0u);
+  const Json text = certificate();
+  EXPECT_EQ(text["complete"], true);
+  EXPECT_TRUE(text["problems"].empty());
+  ASSERT_EQ(text["streams"].size(), 2u);
+  for (const Json& row : text["streams"]) {
+    const bool is_state = row["topic"] == "plant_state";
+    EXPECT_EQ(row["writer"], dds::toString(is_state ? state_.guid : contact_.guid));
+    EXPECT_EQ(row["first_sequence"], 1u);
+    EXPECT_EQ(row["last_sequence"], 100u);
+    EXPECT_EQ(row["count"], 100u);
+    EXPECT_EQ(row["missing"], 0u);
+    EXPECT_EQ(row["service"], is_state ? "plant" : "environment");
+    EXPECT_EQ(row["sent"], 100u);
+    EXPECT_EQ(row["stream_hash"], std::to_string(is_state ? state_.hash : contact_.hash));
+    EXPECT_EQ(row["sent_hash"], row["stream_hash"]);
+  }
+}
+
+TEST_F(LedgerTest, SamplesInTheMiddleThatNeverCameAreCounted) {
+  transmit(state_, 100, [](std::uint64_t sequence) { return sequence != 7 && (sequence < 50 || sequence > 59); });
+  EXPECT_EQ(ledger_.missing(), 11u);
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  EXPECT_FALSE(ledger_.isComplete());
+  EXPECT_TRUE(mentions(ledger_.problems(), "plant_state of plant: 100 samples sent, 89 recorded"));
+  EXPECT_EQ(certificate()["streams"][0]["missing"], 11u);
+}
+
+TEST_F(LedgerTest, SamplesAtTheEndsThatNeverCameAreNoticedByTheManifest) {
+  transmit(state_, 20, [](std::uint64_t sequence) { return sequence > 3 && sequence < 19; });
+  EXPECT_EQ(ledger_.missing(), 0u) << "no hole between the first and the last that came";
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  EXPECT_TRUE(mentions(ledger_.problems(), "20 samples sent, 15 recorded"));
+  EXPECT_FALSE(ledger_.isSettled()) << "they may still come";
+}
+
+TEST_F(LedgerTest, AStreamNobodyHeardOfIsMissingAltogether) {
+  for (int i = 0; i < 5; ++i) state_.send();
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  EXPECT_TRUE(mentions(ledger_.problems(), "5 samples sent, 0 recorded"));
+}
+
+TEST_F(LedgerTest, DuplicatesAreNotBookedAgain) {
+  transmit(state_, 10);
+  for (std::uint64_t sequence = 1; sequence <= 10; ++sequence) {
+    EXPECT_FALSE(ledger_.book(state_.key(), sequence, payloadOf(sequence)));
+  }
+  transmit(state_, 1);
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  ledger_.addManifest(manifestOf("environment", {}));
+  EXPECT_TRUE(ledger_.isComplete());
+  EXPECT_EQ(certificate()["streams"][0]["count"], 11u);
+}
+
+TEST_F(LedgerTest, OtherBytesThanThoseSentAreNoticed) {
+  transmit(state_, 10);
+  std::vector<std::byte> payload = state_.send();
+  payload[0] ^= std::byte{1};
+  EXPECT_TRUE(ledger_.book(state_.key(), 11, payload));
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  ledger_.addManifest(manifestOf("environment", {}));
+  EXPECT_TRUE(mentions(ledger_.problems(), "plant_state of plant: the recorded bytes are not those sent"));
+  EXPECT_FALSE(ledger_.isComplete());
+  EXPECT_EQ(certificate()["complete"], false);
+}
+
+TEST_F(LedgerTest, WritersOfOneTopicAreSeparateStreams) {
+  Sender first{"joint_command", guidOf(7)}, second{"joint_command", guidOf(8)};
+  std::mt19937 generator(60);
+  for (int i = 0; i < 200; ++i) transmit(generator() % 2 == 0 ? first : second, 1);
+  ledger_.addManifest(manifestOf("plant", {&first}));
+  ledger_.addManifest(manifestOf("environment", {&second}));
+  EXPECT_TRUE(ledger_.isComplete());
+  EXPECT_EQ(certificate()["streams"].size(), 2u);
+}
+
+TEST_F(LedgerTest, AManifestThatNeverCameIsAProblem) {
+  transmit(state_, 10);
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  EXPECT_FALSE(ledger_.isSettled());
+  EXPECT_TRUE(mentions(ledger_.problems(), "environment sent no manifest"));
+  EXPECT_EQ(ledger_.problems().size(), 1u);
+}
+
+TEST_F(LedgerTest, AServiceThatFailedIsNotWaitedForButStillMissed) {
+  transmit(state_, 10);
+  ledger_.giveUpOn("environment");
+  EXPECT_FALSE(ledger_.isSettled()) << "the plant's manifest can still come";
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  EXPECT_TRUE(ledger_.isSettled());
+  EXPECT_FALSE(ledger_.isComplete());
+  EXPECT_TRUE(mentions(ledger_.problems(), "environment sent no manifest"));
+}
+
+TEST_F(LedgerTest, AManifestMayComeBeforeTheLastSamples) {
+  std::vector<std::vector<std::byte>> payloads;
+  for (int i = 0; i < 10; ++i) payloads.push_back(state_.send());
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  ledger_.addManifest(manifestOf("environment", {}));
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    EXPECT_FALSE(ledger_.isSettled());
+    ledger_.book(state_.key(), i + 1, payloads[i]);
+  }
+  EXPECT_TRUE(ledger_.isSettled());
+  EXPECT_TRUE(ledger_.isComplete());
+}
+
+TEST_F(LedgerTest, WritersOutsideTheRunAreRecordedWithoutAnAccount) {
+  Sender foreign{"turtle/pose", guidOf(9)};
+  transmit(foreign, 5);
+  ledger_.addManifest(manifestOf("plant", {}));
+  ledger_.addManifest(manifestOf("environment", {}));
+  EXPECT_TRUE(ledger_.isComplete());
+  const Json row = certificate()["streams"][0];
+  EXPECT_EQ(row["topic"], "turtle/pose");
+  EXPECT_FALSE(row.contains("sent"));
+}
+
+TEST_F(LedgerTest, TheCertificateIsWrittenWhateverBytesAForeignNameHas) {
+  Sender foreign{"caf\xE9\x01\"", guidOf(9)};
+  transmit(foreign, 1);
+  EXPECT_EQ(certificate()["streams"].size(), 1u);
+}
+
+}  // namespace
+}  // namespace baton

@@ -1,0 +1,163 @@
+/// From the receive threads to the thread that writes: bounded, in order, and closed without losing anything.
+#include "sample_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <thread>
+#include <vector>
+
+namespace baton {
+namespace {
+
+using std::chrono::milliseconds;
+constexpr milliseconds kNoWait{0};
+constexpr milliseconds kGenerous{30'000};  // a bound for a test that fails, never waited out by one that passes
+
+struct Sample {
+  std::vector<std::byte> payload;
+  dds::RawSample raw;
+};
+
+/// A sample recognisable by its sequence number.
+Sample sampleOf(std::uint64_t sequence, std::size_t size = 16) {
+  Sample sample{std::vector<std::byte>(size, static_cast<std::byte>(sequence)), {}};
+  sample.raw.payload = sample.payload;
+  sample.raw.sequence = sequence;
+  sample.raw.source_timestamp_ns = static_cast<std::int64_t>(1000 * sequence);
+  sample.raw.writer.bytes.fill(static_cast<std::uint8_t>(sequence));
+  return sample;
+}
+
+bool push(SampleQueue& queue, std::uint32_t topic, std::uint64_t sequence, std::size_t size = 16) {
+  const Sample sample = sampleOf(sequence, size);
+  return queue.push(topic, sample.raw);
+}
+
+TEST(SampleQueue, SamplesComeOutAsTheyWentIn) {
+  SampleQueue queue(1 << 20, 1);
+  for (std::uint64_t i = 1; i <= 100; ++i) ASSERT_TRUE(push(queue, static_cast<std::uint32_t>(i % 7), i, i));
+  SampleQueue::Batch batch;
+  ASSERT_TRUE(queue.take(batch, kNoWait));
+  ASSERT_EQ(batch.entries.size(), 100u);
+  for (std::uint64_t i = 1; i <= 100; ++i) {
+    const SampleQueue::Entry& entry = batch.entries[i - 1];
+    const Sample expected = sampleOf(i, i);
+    EXPECT_EQ(entry.topic, i % 7);
+    EXPECT_EQ(entry.sequence, i);
+    EXPECT_EQ(entry.source_timestamp_ns, expected.raw.source_timestamp_ns);
+    EXPECT_EQ(entry.writer, expected.raw.writer);
+    EXPECT_TRUE(std::ranges::equal(batch.payload(entry), expected.payload));
+  }
+}
+
+TEST(SampleQueue, ABatchIsEmptiedBeforeItIsFilledAgain) {
+  SampleQueue queue(1 << 20, 1);
+  SampleQueue::Batch batch;
+  for (std::uint64_t i = 1; i <= 5; ++i) {
+    push(queue, 0, i);
+    ASSERT_TRUE(queue.take(batch, kNoWait));
+    ASSERT_EQ(batch.entries.size(), 1u);
+    EXPECT_EQ(batch.entries[0].sequence, i);
+    EXPECT_EQ(batch.payloads.size(), 16u);
+  }
+  ASSERT_TRUE(queue.take(batch, kNoWait)) << "empty, but still open";
+  EXPECT_TRUE(batch.entries.empty());
+  EXPECT_TRUE(batch.payloads.empty());
+}
+
+TEST(SampleQueue, HoldsItsBytesAndNotOneMore) {
+  SampleQueue queue(100, 1);
+  EXPECT_TRUE(push(queue, 0, 1, 60));
+  EXPECT_FALSE(push(queue, 0, 2, 41));
+  EXPECT_TRUE(push(queue, 0, 3, 40)) << "what fits is still taken";
+  EXPECT_FALSE(push(queue, 0, 4, 1));
+  SampleQueue::Batch batch;
+  ASSERT_TRUE(queue.take(batch, kNoWait));
+  ASSERT_EQ(batch.entries.size(), 2u);
+  EXPECT_EQ(batch.entries[0].sequence, 1u);
+  EXPECT_EQ(batch.entries[1].sequence, 3u);
+  EXPECT_TRUE(push(queue, 0, 5, 100)) << "taking makes room";
+}
+
+TEST(SampleQueue, LogTimesNeverDecreaseAcrossTopicsAndBatches) {
+  SampleQueue queue(1 << 20, 1);
+  SampleQueue::Batch batch;
+  std::int64_t last = 0;
+  for (std::uint64_t i = 1; i <= 3000; ++i) {
+    push(queue, static_cast<std::uint32_t>(i % 5), i);
+    if (i % 100 != 0) continue;
+    ASSERT_TRUE(queue.take(batch, kNoWait));
+    for (const SampleQueue::Entry& entry : batch.entries) {
+      EXPECT_GE(entry.log_time_ns, last);
+      last = entry.log_time_ns;
+    }
+  }
+  EXPECT_GT(last, 1'600'000'000'000'000'000) << "wall clock, nanoseconds since 1970";
+}
+
+TEST(SampleQueue, ClosingRefusesNewSamplesAndHandsOutTheOldOnes) {
+  SampleQueue queue(1 << 20, 100);
+  push(queue, 0, 1);
+  queue.close();
+  EXPECT_FALSE(push(queue, 0, 2));
+  SampleQueue::Batch batch;
+  EXPECT_TRUE(queue.take(batch, kGenerous)) << "closed, but not empty";
+  ASSERT_EQ(batch.entries.size(), 1u);
+  EXPECT_FALSE(queue.take(batch, kGenerous));
+  EXPECT_TRUE(batch.entries.empty());
+  EXPECT_FALSE(queue.take(batch, kGenerous)) << "and stays so";
+}
+
+TEST(SampleQueue, ClosingWakesTheWriter) {
+  SampleQueue queue(1 << 20, 100);
+  std::thread closer([&] { queue.close(); });
+  SampleQueue::Batch batch;
+  EXPECT_FALSE(queue.take(batch, kGenerous));
+  closer.join();
+}
+
+TEST(SampleQueue, EnoughSamplesWakeTheWriterBeforeItsTime) {
+  constexpr std::size_t kWake = 10;
+  SampleQueue queue(1 << 20, kWake);
+  std::thread pusher([&] {
+    for (std::uint64_t i = 1; i <= kWake; ++i) push(queue, 0, i);
+  });
+  SampleQueue::Batch batch;
+  EXPECT_TRUE(queue.take(batch, std::chrono::hours(1)));
+  EXPECT_EQ(batch.entries.size(), kWake);
+  pusher.join();
+}
+
+TEST(SampleQueue, ManyThreadsLoseNothingAndKeepTheirOwnOrder) {
+  constexpr std::uint64_t kEach = 5000;
+  constexpr std::uint32_t kThreads = 3;
+  SampleQueue queue(std::numeric_limits<std::size_t>::max(), 64);
+  std::vector<std::thread> pushers;
+  for (std::uint32_t topic = 0; topic < kThreads; ++topic) {
+    pushers.emplace_back([&queue, topic] {
+      for (std::uint64_t i = 1; i <= kEach; ++i) push(queue, topic, i);
+    });
+  }
+  std::thread closer([&] {
+    for (std::thread& pusher : pushers) pusher.join();
+    queue.close();
+  });
+  SampleQueue::Batch batch;
+  std::vector<std::uint64_t> last(kThreads, 0);
+  std::int64_t last_time = 0;
+  while (queue.take(batch, kGenerous)) {
+    for (const SampleQueue::Entry& entry : batch.entries) {
+      EXPECT_EQ(entry.sequence, ++last[entry.topic]);
+      EXPECT_EQ(batch.payload(entry).front(), static_cast<std::byte>(entry.sequence));
+      EXPECT_GE(entry.log_time_ns, last_time);
+      last_time = entry.log_time_ns;
+    }
+  }
+  closer.join();
+  EXPECT_EQ(last, std::vector<std::uint64_t>(kThreads, kEach));
+}
+
+}  // namespace
+}  // namespace baton

@@ -1,0 +1,142 @@
+#include "support/processes.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace baton::test {
+namespace fs = std::filesystem;
+namespace {
+
+std::string contentsOf(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+pid_t launch(const fs::path& program, const std::vector<std::string>& arguments, const fs::path& home,
+             const fs::path& out, const fs::path& err) {
+  std::vector<std::string> all{program.string()};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& argument : all) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  const pid_t pid = fork();
+  if (pid == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that is killed leaves nothing behind
+    setenv("BATON_HOME", home.c_str(), 1);
+    const int out_file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    const int err_file = out == err ? out_file : open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+    dup2(out_file, STDOUT_FILENO);
+    dup2(err_file, STDERR_FILENO);
+    execv(program.c_str(), argv.data());
+    _exit(127);
+  }
+  if (pid < 0) throw std::runtime_error("fork failed");
+  return pid;
+}
+
+int waitFor(pid_t pid) {
+  int how = 0;
+  waitpid(pid, &how, 0);
+  return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+}
+
+}  // namespace
+
+fs::path programFolder() { return BATON_TEST_PROGRAMS; }
+fs::path deployFolder() { return BATON_TEST_DEPLOY; }
+
+Finished runProgram(const fs::path& program, const std::vector<std::string>& arguments, const fs::path& home) {
+  static int count = 0;
+  const std::string stem = "call" + std::to_string(++count);
+  const fs::path out = home / (stem + ".out");
+  const fs::path err = home / (stem + ".err");
+  const int exit_code = waitFor(launch(program, arguments, home, out, err));
+  return {exit_code, contentsOf(out), contentsOf(err)};
+}
+
+Bench::Bench() : domain_(1 + getpid() % 99) {
+  std::string pattern = (fs::temp_directory_path() / "baton-test-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  folder_ = pattern;
+}
+
+Bench::~Bench() {
+  for (const int pid : started_) {
+    kill(pid, SIGKILL);
+    waitpid(pid, nullptr, 0);
+  }
+  // What a failed test may have left running has this folder on its command line.
+  for (const int pid : processesWith(folder_.string())) kill(pid, SIGKILL);
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+Finished Bench::baton(std::vector<std::string> arguments) const {
+  static const std::vector<std::string> kWithoutDomain{"bag", "model", "--help", "--version"};
+  const bool takes_domain =
+      std::find(kWithoutDomain.begin(), kWithoutDomain.end(), arguments.front()) == kWithoutDomain.end();
+  if (takes_domain) arguments.insert(arguments.end(), {"--domain", std::to_string(domain_)});
+  return runProgram(programFolder() / "baton", arguments, folder_);
+}
+
+nlohmann::json Bench::batonJson(std::vector<std::string> arguments) const {
+  const Finished finished = baton(std::move(arguments));
+  try {
+    return nlohmann::json::parse(finished.out);
+  } catch (const std::exception& error) {
+    throw std::runtime_error("no JSON from baton (" + std::string(error.what()) + "), exit code " +
+                             std::to_string(finished.exit_code) + "\n" + finished.out + finished.err);
+  }
+}
+
+int Bench::start(const std::string& program, const std::vector<std::string>& arguments, const std::string& log) {
+  const fs::path file = folder_ / log;
+  started_.push_back(launch(programFolder() / program, arguments, folder_, file, file));
+  return started_.back();
+}
+
+int Bench::wait(int pid) {
+  std::erase(started_, pid);
+  return waitFor(pid);
+}
+
+std::string Bench::write(const std::string& name, const std::string& text) const {
+  const fs::path file = folder_ / name;
+  std::ofstream(file, std::ios::binary) << text;
+  return file.string();
+}
+
+bool eventually(const std::function<bool()>& condition) {
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > give_up) return false;
+    usleep(10'000);
+  }
+  return true;
+}
+
+std::vector<int> processesWith(const std::string& text) {
+  std::vector<int> found;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename().string();
+    if (!std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; })) continue;
+    std::string command = contentsOf(entry.path() / "cmdline");
+    std::replace(command.begin(), command.end(), '\0', ' ');
+    if (std::stoi(name) != getpid() && command.find(text) != std::string::npos) found.push_back(std::stoi(name));
+  }
+  return found;
+}
+
+}  // namespace baton::test

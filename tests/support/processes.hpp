@@ -1,0 +1,62 @@
+/// Programs under test, run as a person runs them, each test in a folder and a DDS domain of its own.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace baton::test {
+
+struct Finished {
+  int exit_code = -1;  // 128 + signal when one ended it
+  std::string out;
+  std::string err;
+};
+
+/// A folder that is deleted with everything in it, serving as BATON_HOME of what is started here.
+class Bench {
+ public:
+  Bench();
+  ~Bench();
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+
+  [[nodiscard]] std::filesystem::path folder() const { return folder_; }
+  /// Different for tests that run at the same time, and below the ports the kernel hands out to others.
+  [[nodiscard]] int domain() const { return domain_; }
+  /// Runs the `baton` command line to its end; --domain is added for commands that take one.
+  [[nodiscard]] Finished baton(std::vector<std::string> arguments) const;
+  /// The same, parsed from standard output.
+  [[nodiscard]] nlohmann::json batonJson(std::vector<std::string> arguments) const;
+  /// Starts a program and returns its process id; its output goes to `log` in the folder. Ended with the bench.
+  [[nodiscard]] int start(const std::string& program, const std::vector<std::string>& arguments,
+                          const std::string& log);
+  /// Waits for a started program. Returns its exit code, 128 + signal when one ended it.
+  [[nodiscard]] int wait(int pid);
+  /// Writes a file into the folder and returns its path.
+  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const;
+
+ private:
+  std::filesystem::path folder_;
+  int domain_;
+  std::vector<int> started_;
+};
+
+/// Where the programs and the repository's files are.
+[[nodiscard]] std::filesystem::path programFolder();
+[[nodiscard]] std::filesystem::path deployFolder();
+
+/// Runs a program to its end.
+[[nodiscard]] Finished runProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                                  const std::filesystem::path& home);
+
+/// Waits until `condition` holds, by looking at it again and again; false when it does not within a minute, which fails
+/// a test that is broken and decides nothing about one that is not.
+[[nodiscard]] bool eventually(const std::function<bool()>& condition);
+
+/// Processes whose command line contains `text`.
+[[nodiscard]] std::vector<int> processesWith(const std::string& text);
+
+}  // namespace baton::test

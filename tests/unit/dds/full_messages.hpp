@@ -1,0 +1,223 @@
+/// One message of every type, filled to its bounds: the longest payload each can have. A new type needs one function
+/// here; the codec's tests notice when it is missing.
+#pragma once
+
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "msg/loop.h"
+#include "msg/record.h"
+#include "msg/service.h"
+#include "msg/sim.h"
+#include "msg/swap.h"
+
+namespace baton::test {
+
+inline constexpr std::uint64_t kId = 0xFEDC'BA98'7654'3210;
+inline constexpr std::int64_t kTime = -0x0123'4567'89AB'CDEF;
+
+inline std::string fullName() { return std::string(msg::MAX_NAME, 'n'); }
+inline std::vector<double> fullSequence() { return std::vector<double>(msg::MAX_JOINTS, -1.0 / 3.0); }
+inline constexpr std::array<double, 3> kThree{0.1, -2e300, 3e-300};
+inline constexpr std::array<double, 9> kNine{1, 2, 3, 4, 5, 6, 7, 8, 9};
+
+inline void fill(msg::Quaternion& m) {
+  m.w(0.5);
+  m.x(-0.5);
+  m.y(0.5);
+  m.z(-0.5);
+}
+
+inline void fill(msg::PlantState& m) {
+  m.step(kId);
+  m.time_ns(kTime);
+  m.position(fullSequence());
+  m.velocity(fullSequence());
+  m.applied_effort(fullSequence());
+  m.tip_position(kThree);
+  fill(m.tip_orientation());
+  m.tip_velocity(kThree);
+  m.tip_angular_velocity(kThree);
+  m.holder(fullName());
+  m.chain_hash(kId);
+}
+
+inline void fill(msg::Contact& m) {
+  m.step(kId);
+  m.time_ns(kTime);
+  m.force(kThree);
+  m.moment(kThree);
+  m.force_by_position(kNine);
+  m.force_by_velocity(kNine);
+  m.penetration(0.25);
+}
+
+inline void fill(msg::Reference& m) {
+  m.step(kId);
+  m.time_ns(kTime);
+  m.position(fullSequence());
+  m.velocity(fullSequence());
+  m.acceleration(fullSequence());
+  m.has_task(true);
+  m.tip_position(kThree);
+  fill(m.tip_orientation());
+  m.tip_velocity(kThree);
+  m.tip_angular_velocity(kThree);
+  m.tip_acceleration(kThree);
+  m.tip_angular_acceleration(kThree);
+  m.force(kThree);
+  m.moment(kThree);
+}
+
+inline void fill(msg::JointCommand& m) {
+  m.step(kId);
+  m.time_ns(kTime);
+  m.controller(fullName());
+  m.effort(fullSequence());
+  m.inputs_hash(kId);
+}
+
+inline void fill(msg::SimRequest& m) {
+  m.request_id(kId);
+  m.action(msg::SIM_STOP);
+  m.steps(kId);
+  m.rate(0.1);
+}
+
+inline void fill(msg::SimReply& m) {
+  m.request_id(kId);
+  m.accepted(true);
+  m.step(kId);
+  m.reason(std::string(200, 'r'));
+}
+
+inline void fill(msg::SimStatus& m) {
+  m.state(msg::SIM_STATE_ABORTED);
+  m.mode(msg::SIM_MODE_REALTIME);
+  m.step(kId);
+  m.time_ns(kTime);
+  m.step_ns(kTime);
+  m.end_step(kId);
+  m.rate(0.1);
+  m.elapsed_s(1e9);
+  m.holder(fullName());
+  m.waiting_for(std::string(200, 'w'));
+  m.reason(std::string(200, 'r'));
+  m.missed_steps(kId);
+  m.chain_hash(kId);
+}
+
+inline void fill(msg::SwapRequest& m) {
+  m.request_id(kId);
+  m.target(fullName());
+  m.at_step(kId);
+  m.force(true);
+}
+
+inline void fill(msg::SwapPlan& m) {
+  m.plan_id(kId);
+  m.phase(msg::SWAP_CANCEL);
+  m.outgoing(fullName());
+  m.incoming(fullName());
+  m.forecast_step(kId);
+  m.at_step(kId);
+}
+
+inline void fill(msg::SwapAck& m) {
+  m.plan_id(kId);
+  m.phase(msg::SWAP_COMMIT);
+  m.controller(fullName());
+  m.ready(true);
+  m.effort(fullSequence());
+  m.reason(std::string(200, 'r'));
+}
+
+inline void fill(msg::SwapOutcome& m) {
+  m.request_id(kId);
+  m.plan_id(kId);
+  m.done(true);
+  m.outgoing(fullName());
+  m.incoming(fullName());
+  m.decided_at_step(kId);
+  m.at_step(kId);
+  m.blend_steps(kId);
+  m.raw_effort_step(fullSequence());
+  m.applied_effort_step(fullSequence());
+  m.reason(std::string(200, 'r'));
+}
+
+inline void fill(msg::ControllerStatus& m) {
+  m.name(fullName());
+  m.law(fullName());
+  m.uses_force(true);
+  m.state(msg::CONTROLLER_FAILED);
+  m.step(kId);
+  m.effort(fullSequence());
+  m.effort_gap(fullSequence());
+  m.text(std::string(200, 't'));
+}
+
+inline void fill(msg::ServiceStatus& m) {
+  m.name(fullName());
+  m.role(fullName());
+  m.state(msg::SERVICE_FAILED);
+  m.pid(-2'000'000'000);
+  m.text(std::string(200, 't'));
+}
+
+inline void fill(msg::Event& m) {
+  m.step(kId);
+  m.time_ns(kTime);
+  m.severity(msg::SEVERITY_ERROR);
+  m.service(fullName());
+  m.kind(fullName());
+  m.text(std::string(400, 't'));
+}
+
+inline void fill(msg::StreamManifest& m) {
+  m.topic(std::string(64, 't'));
+  m.writer().fill(0xAB);
+  m.first_sequence(kId);
+  m.last_sequence(kId);
+  m.count(kId);
+  m.stream_hash(kId);
+}
+
+inline void fill(msg::ServiceManifest& m) {
+  m.name(fullName());
+  m.streams().resize(msg::MAX_STREAMS);
+  for (msg::StreamManifest& stream : m.streams()) fill(stream);
+}
+
+inline void fill(msg::RecorderStatus& m) {
+  m.state(msg::RECORDER_FAILED);
+  m.acknowledged_step(kId);
+  m.messages(kId);
+  m.bytes(kId);
+  m.lost(kId);
+  m.complete(true);
+  m.path(std::string(400, 'p'));
+  m.text(std::string(200, 't'));
+}
+
+inline void fill(msg::ReplayStatus& m) {
+  m.state(msg::REPLAY_FINISHED);
+  m.messages(kId);
+  m.total(kId);
+  m.position_ns(kTime);
+  m.duration_ns(kTime);
+  m.lateness_p50_us(1.5);
+  m.lateness_p99_us(2.5);
+  m.lateness_max_us(3.5);
+  m.path(std::string(400, 'p'));
+}
+
+template <class T>
+T full() {
+  T message;
+  fill(message);
+  return message;
+}
+
+}  // namespace baton::test

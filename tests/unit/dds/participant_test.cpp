@@ -1,0 +1,131 @@
+/// Who else is in the domain, and what they write.
+#include "dds/participant.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "dds/endpoint.hpp"
+#include "loopback.hpp"
+
+namespace baton::dds {
+namespace {
+
+using test::memberOptions;
+using test::Signal;
+
+/// Writers in one partition, as watchWriters() tells of them. Outlives the participant it listens to.
+class Watch {
+ public:
+  Watch(Signal& signal, const std::string& partition) : signal_(signal), partition_(test::testPartition(partition)) {}
+
+  void listenTo(Participant& participant) {
+    participant.watchWriters([this](const DiscoveredWriter& writer) {
+      {
+        const std::lock_guard lock(mutex_);
+        const auto& names = writer.partitions;
+        if (std::find(names.begin(), names.end(), partition_) != names.end()) found_[writer.guid] = writer;
+      }
+      signal_.notify();
+    });
+  }
+  [[nodiscard]] std::map<Guid, DiscoveredWriter> found() const {
+    const std::lock_guard lock(mutex_);
+    return found_;
+  }
+
+ private:
+  Signal& signal_;
+  std::string partition_;
+  mutable std::mutex mutex_;
+  std::map<Guid, DiscoveredWriter> found_;
+};
+
+TEST(ParticipantTest, DomainsOutsideTheRangeAreRefused) {
+  for (const int domain : {-1, 233, 1'000'000}) {
+    ParticipantOptions options = memberOptions("a", "cell");
+    options.domain = domain;
+    EXPECT_THROW(Participant{options}, UsageError) << domain;
+  }
+}
+
+TEST(ParticipantTest, PeersSayWhoTheyAreAndLeave) {
+  Signal signal;
+  Participant watcher(memberOptions("watcher", "cell"), [&](const Peer&) { signal.notify(); });
+  const auto find = [&](const std::string& service) -> std::optional<Peer> {
+    for (const Peer& peer : watcher.peers()) {
+      if (peer.run == std::to_string(getpid()) && peer.service == service) return peer;
+    }
+    return std::nullopt;
+  };
+  {
+    ParticipantOptions options = memberOptions("plant", "elsewhere");  // peers are seen across partitions
+    options.cell = "left";
+    Participant plant(options);
+    ASSERT_TRUE(signal.waitUntil([&] { return find("plant").has_value(); }));
+    EXPECT_EQ(find("plant")->cell, "left");
+    EXPECT_FALSE(find("watcher")) << "oneself is no peer";
+  }
+  // A farewell has no callback of its own. It comes on the thread that also tells of the next arrival, before or after
+  // it.
+  for (int i = 0; i < 100 && find("plant"); ++i) {
+    const std::string name = "later" + std::to_string(i);
+    Participant later(memberOptions(name, "cell"));
+    ASSERT_TRUE(signal.waitUntil([&] { return find(name).has_value(); }));
+  }
+  EXPECT_FALSE(find("plant"));
+}
+
+TEST(ParticipantTest, WatchWritersFindsThoseThereAreAndThoseToCome) {
+  Signal signal;
+  Watch watch(signal, "cell");
+  Participant plant(memberOptions("plant", "cell")), recorder(memberOptions("recorder", "cell"));
+  RawWriter early(plant, {.topic = "early", .type = "baton::test::A", .profile = Profile::kStatus});
+  {
+    // Once a reader of the recorder is matched with it, discovery knows the writer.
+    RawReader probe(
+        recorder, {.topic = "early", .type = "baton::test::A", .profile = Profile::kStatus}, [](const RawSample&) {},
+        [&] { signal.notify(); });
+    ASSERT_TRUE(signal.waitUntil([&] { return probe.matched().size() == 1; }));
+  }
+  watch.listenTo(recorder);
+  ASSERT_TRUE(signal.waitUntil([&] { return watch.found().contains(early.guid()); }));
+  const DiscoveredWriter status = watch.found().at(early.guid());
+  EXPECT_EQ(status.topic, "early");
+  EXPECT_EQ(status.type, "baton::test::A");
+  EXPECT_TRUE(status.reliable);
+  EXPECT_TRUE(status.transient_local);
+  EXPECT_FALSE(status.keyed);
+  EXPECT_FALSE(status.exclusive_ownership);
+  EXPECT_EQ(status.partitions, std::vector<std::string>{test::testPartition("cell")});
+  EXPECT_NE(status.qos_text.find("durability: transient_local"), std::string::npos);
+
+  RawWriter later(plant, {.topic = "later", .type = "baton::test::B", .profile = Profile::kLoop, .keyed = true});
+  ASSERT_TRUE(signal.waitUntil([&] { return watch.found().contains(later.guid()); }));
+  const DiscoveredWriter loop = watch.found().at(later.guid());
+  EXPECT_EQ(loop.topic, "later");
+  EXPECT_EQ(loop.type, "baton::test::B");
+  EXPECT_FALSE(loop.transient_local);
+  EXPECT_TRUE(loop.keyed);
+  EXPECT_EQ(watch.found().size(), 2u);
+}
+
+TEST(ParticipantTest, AParticipantMadeLaterLearnsOfTheWritersThereAre) {
+  Signal signal;
+  Watch watch(signal, "cell");
+  Participant plant(memberOptions("plant", "cell"));
+  RawWriter out(plant, {.topic = "topic", .type = "baton::test::A", .profile = Profile::kLoop});
+  Participant recorder(memberOptions("recorder", "observers"));  // another partition: it sees, and does not match
+  watch.listenTo(recorder);
+  EXPECT_TRUE(signal.waitUntil([&] { return watch.found().contains(out.guid()); }));
+}
+
+}  // namespace
+}  // namespace baton::dds

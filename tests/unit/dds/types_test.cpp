@@ -1,0 +1,138 @@
+/// The chain of hashes, the text of a GUID, and the topic table against the IDL.
+#include "dds/types.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <regex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dds/hash.hpp"
+#include "dds/topics.hpp"
+#include "msg/idl_text.hpp"
+
+namespace baton::dds {
+namespace {
+
+std::span<const std::byte> bytesOf(std::string_view text) { return std::as_bytes(std::span(text.data(), text.size())); }
+
+std::uint64_t chained(const std::vector<std::string>& payloads) {
+  std::uint64_t hash = 0;
+  for (const std::string& payload : payloads) hash = chainHash(hash, bytesOf(payload));
+  return hash;
+}
+
+TEST(ChainHash, IsXxh3SoRecordingsCanBeCheckedByAnybody) {
+  // XXH3_64bits of nothing, as published with the algorithm.
+  EXPECT_EQ(chainHash(0, {}), 0x2D06'8005'38D3'94C2u);
+}
+
+TEST(ChainHash, DependsOnEveryPayloadAndOnTheirOrder) {
+  const std::uint64_t reference = chained({"one", "two", "three"});
+  EXPECT_EQ(chained({"one", "two", "three"}), reference);
+  EXPECT_NE(chained({"two", "one", "three"}), reference);
+  EXPECT_NE(chained({"one", "two"}), reference);
+  EXPECT_NE(chained({"one", "two", "three", ""}), reference);
+  EXPECT_NE(chained({"", "one", "two", "three"}), reference);
+}
+
+TEST(ChainHash, DependsOnWhereOnePayloadEndsAndTheNextBegins) {
+  EXPECT_NE(chained({"onetwo"}), chained({"one", "two"}));
+  EXPECT_NE(chained({"on", "etwo"}), chained({"one", "two"}));
+}
+
+TEST(ChainHash, EveryBitCounts) {
+  std::mt19937 generator(50);
+  for (const std::size_t size :
+       {1u, 4u, 16u, 17u, 128u, 129u, 240u, 241u, 1024u, 1025u}) {  // XXH3 changes method at some
+    std::vector<std::byte> payload(size);
+    for (std::byte& b : payload) b = static_cast<std::byte>(generator());
+    std::set<std::uint64_t> hashes{chainHash(1, payload), chainHash(2, payload)};
+    for (std::size_t bit = 0; bit < 8 * size; ++bit) {
+      payload[bit / 8] ^= std::byte{1} << (bit % 8);
+      hashes.insert(chainHash(1, payload));
+      payload[bit / 8] ^= std::byte{1} << (bit % 8);
+    }
+    EXPECT_EQ(hashes.size(), 8 * size + 2) << size;  // a collision among some 10^4 of 2^64 has a chance of 10^-12
+  }
+}
+
+Guid guidOf(std::uint8_t first) {
+  Guid guid;
+  for (std::size_t i = 0; i < guid.bytes.size(); ++i) guid.bytes[i] = static_cast<std::uint8_t>(first + 17 * i);
+  return guid;
+}
+
+TEST(Guids, ReadAsDdsToolsPrintThem) {
+  EXPECT_EQ(toString(Guid{}), "000000000000000000000000.00000000");
+  EXPECT_EQ(toString(guidOf(0)), "00112233445566778899aabb.ccddeeff");
+}
+
+TEST(Guids, ThePrefixIsTheParticipant) {
+  const Guid guid = guidOf(1);
+  const GuidPrefix prefix = prefixOf(guid);
+  EXPECT_TRUE(std::equal(prefix.begin(), prefix.end(), guid.bytes.begin()));
+  Guid sibling = guid;
+  sibling.bytes[15] ^= 1;
+  EXPECT_EQ(prefixOf(sibling), prefix);
+  EXPECT_NE(sibling, guid);
+  Guid stranger = guid;
+  stranger.bytes[11] ^= 1;
+  EXPECT_NE(prefixOf(stranger), prefix);
+}
+
+struct Row {
+  std::string name;
+  std::string type;
+};
+
+std::vector<Row> topicTable() {
+  std::vector<Row> rows;
+  const auto list = [&](const auto&... topics) { (rows.push_back({topics.name, topics.type}), ...); };
+  list(topics::kPlantState, topics::kContact, topics::kReference, topics::kJointCommand, topics::kShadowCommand,
+       topics::kSimRequest, topics::kSimReply, topics::kSimStatus, topics::kSwapRequest, topics::kSwapPlan,
+       topics::kSwapAck, topics::kSwapOutcome, topics::kControllerStatus, topics::kServiceStatus,
+       topics::kServiceManifest, topics::kEvent, topics::kRecorderStatus, topics::kReplayStatus);
+  return rows;
+}
+
+TEST(TopicTable, EveryNameIsUsedOnce) {
+  std::set<std::string> names;
+  for (const Row& row : topicTable()) EXPECT_TRUE(names.insert(row.name).second) << row.name;
+}
+
+TEST(TopicTable, EveryTypeIsInTheIdl) {
+  std::set<std::string, std::less<>> types;
+  for (const msg::IdlText& entry : msg::allIdlTexts()) types.insert(std::string(entry.type_name));
+  for (const Row& row : topicTable()) EXPECT_TRUE(types.contains(row.type)) << row.name << " has type " << row.type;
+}
+
+TEST(IdlTexts, EveryTypeIsListedOnceAndDefinedInItsText) {
+  std::set<std::string_view> names;
+  for (const msg::IdlText& entry : msg::allIdlTexts()) {
+    EXPECT_TRUE(names.insert(entry.type_name).second) << entry.type_name;
+    const std::string bare(entry.type_name.substr(entry.type_name.rfind(':') + 1));
+    EXPECT_TRUE(entry.type_name == "baton::msg::" + bare);
+    EXPECT_TRUE(std::regex_search(std::string(entry.text), std::regex("struct +" + bare + " *\\{"))) << bare;
+  }
+}
+
+TEST(IdlTexts, EveryTextStandsAlone) {
+  const std::regex mention("baton::msg::([A-Za-z_0-9]+)");
+  for (const msg::IdlText& entry : msg::allIdlTexts()) {
+    const std::string text(entry.text);
+    EXPECT_EQ(text.find('#'), std::string::npos) << entry.type_name << ": no preprocessor lines";
+    EXPECT_EQ(text.find("//"), std::string::npos) << entry.type_name << ": no comments";
+    for (std::sregex_iterator it(text.begin(), text.end(), mention), end; it != end; ++it) {
+      const std::regex definition("(struct|enum|const long) +" + (*it)[1].str() + "\\b");
+      EXPECT_TRUE(std::regex_search(text, definition)) << entry.type_name << " uses " << it->str();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace baton::dds

@@ -1,0 +1,125 @@
+#include "mcap/file.hpp"
+
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "recording.hpp"
+
+namespace baton::mcap {
+namespace {
+
+/// A limit on the size of files, standing in for a full disk, until the end of the scope.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &old_limit_);
+    const rlimit limit{.rlim_cur = bytes, .rlim_max = old_limit_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &old_limit_);
+    std::signal(SIGXFSZ, old_handler_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit old_limit_{};
+  void (*old_handler_)(int);
+};
+
+template <class Call>
+std::string messageOf(Call call) {
+  try {
+    call();
+  } catch (const WriteError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no WriteError";
+  return {};
+}
+
+class FileTest : public testing::Test {
+ protected:
+  TemporaryFolder folder;
+  std::filesystem::path path = folder.file("out");
+};
+
+TEST_F(FileTest, AShortWriteIsAnErrorThatNamesFileAndBytes) {
+  OutputFile file(path, OutputFile::IfExists::kRefuse);
+  file.write(payload(600, 1));
+  {
+    const FileSizeLimit limit(1000);
+    const std::string message = messageOf([&] { file.write(payload(700, 2)); });
+    EXPECT_NE(message.find(path.string()), std::string::npos) << message;
+    EXPECT_NE(message.find("wrote 400 of 700 bytes at byte 600"), std::string::npos) << message;
+  }
+  EXPECT_EQ(file.size(), 1000U);
+  EXPECT_EQ(std::filesystem::file_size(path), 1000U);
+  // There would be room again, but the file is torn.
+  EXPECT_THROW(file.write(payload(1, 3)), WriteError);
+  EXPECT_THROW(file.sync(), WriteError);
+  EXPECT_THROW(file.close(), WriteError);
+  EXPECT_EQ(std::filesystem::file_size(path), 1000U);
+}
+
+TEST_F(FileTest, AFullDiskIsReportedAtOnce) {
+  OutputFile file("/dev/full", OutputFile::IfExists::kReplace);
+  const std::string message = messageOf([&] { file.write(payload(10, 1)); });
+  EXPECT_NE(message.find("/dev/full: wrote 0 of 10 bytes at byte 0"), std::string::npos) << message;
+  EXPECT_EQ(file.durableSize(), 0U);
+}
+
+TEST_F(FileTest, AFailedSyncMakesNothingDurable) {
+  OutputFile file("/dev/null", OutputFile::IfExists::kReplace);  // takes everything, keeps nothing
+  file.write(payload(10, 1));
+  EXPECT_THROW(file.sync(), WriteError);
+  EXPECT_EQ(file.durableSize(), 0U);
+  EXPECT_THROW(file.write(payload(10, 1)), WriteError);
+}
+
+TEST_F(FileTest, CannotBeCreatedWithoutAFolder) {
+  EXPECT_THROW(OutputFile(folder.file("no/such/folder"), OutputFile::IfExists::kRefuse), UnavailableError);
+}
+
+TEST_F(FileTest, ARecordingThatFillsTheDiskStaysReadable) {
+  WriterOptions options;
+  options.compression = Compression::kNone;
+  options.chunk_bytes = 1000;
+  std::uint64_t taken = 0;
+  {
+    Writer writer(path, options);
+    const ChannelId channel = writer.addChannel("a", "cdr", kNoSchema);
+    const FileSizeLimit limit(20'000);
+    const std::string message = messageOf([&] {
+      for (unsigned i = 0; i < 10'000; ++i) writer.write(channel, i, i, i, payload(50, i));
+    });
+    EXPECT_NE(message.find("File too large"), std::string::npos) << message;
+    EXPECT_NE(message.find(path.string()), std::string::npos) << message;
+    taken = writer.statistics().written_messages;
+    EXPECT_LT(taken, writer.statistics().messages);
+    EXPECT_EQ(messageOf([&] { writer.addChannel("b", "cdr", kNoSchema); }), message);
+    EXPECT_EQ(messageOf([&] { writer.close(); }), message);
+  }
+  const Reader reader(path);
+  EXPECT_FALSE(reader.info().is_complete);
+  EXPECT_GT(taken, 100U);
+  // A chunk may be in whole and only its index cut.
+  const std::vector<Sample> samples = samplesOf(reader);
+  EXPECT_GE(samples.size(), taken);
+  for (unsigned i = 0; i < samples.size(); ++i) ASSERT_EQ(samples[i].data, payload(50, i));
+}
+
+TEST_F(FileTest, ReadingBeyondTheEndIsAnError) {
+  saveFile(path, payload(100, 1));
+  const InputFile file(path);
+  EXPECT_EQ(file.size(), 100U);
+  Bytes bytes(60);
+  file.read(40, bytes);
+  EXPECT_EQ(bytes.back(), payload(100, 1).back());
+  EXPECT_THROW(file.read(41, bytes), FormatError);
+}
+
+}  // namespace
+}  // namespace baton::mcap
