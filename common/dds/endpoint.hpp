@@ -19,6 +19,7 @@ struct EndpointOptions {
   bool keyed = false;                // must equal the other side's
   bool exclusive_ownership = false;  // likewise
   bool best_effort = false;          // reader: also match writers that do not resend
+  bool operator==(const EndpointOptions&) const = default;
 };
 
 /// Called when a counterpart is matched or lost, on a DDS thread.

@@ -3,9 +3,11 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <algorithm>
+#include <chrono>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <sstream>
+#include <tuple>
 
 #include "base/error.hpp"
 #include "dds/participant_impl.hpp"
@@ -19,24 +21,30 @@ namespace rtps = eprosima::fastrtps::rtps;
 constexpr int kMaxDomain = 232;
 constexpr int kSocketBuffer = 4 << 20;  // loopback UDP loses datagrams when a busy receiver's buffer is full
 
-// Discovery data of a Baton process: three fields, one a line.
-std::string encodePeer(const Peer& peer) { return "baton\n" + peer.cell + "\n" + peer.run + "\n" + peer.service; }
+// Discovery data of a Baton process: one field a line.
+std::string encodePeer(const Peer& peer) {
+  return "baton\n" + peer.cell + "\n" + peer.run + "\n" + peer.service + "\n" + std::to_string(peer.started_ns);
+}
 
-std::optional<Peer> decodePeer(const std::string& text) {
+std::optional<Peer> decodePeer(const std::string& text, const GuidPrefix& prefix) {
   std::istringstream lines(text);
   std::string tag;
   Peer peer;
+  peer.prefix = prefix;
   if (!std::getline(lines, tag) || tag != "baton") return std::nullopt;
   std::getline(lines, peer.cell);
   std::getline(lines, peer.run);
   std::getline(lines, peer.service);
-  return peer;
+  lines >> peer.started_ns;
+  return lines.fail() ? std::nullopt : std::optional(peer);
 }
 
-DomainParticipantQos participantQos(const ParticipantOptions& options) {
+GuidPrefix toPrefix(const rtps::GUID_t& guid) { return prefixOf(toGuid(guid)); }
+
+DomainParticipantQos participantQos(const ParticipantOptions& options, const Peer& self) {
   DomainParticipantQos qos = DomainParticipantFactory::get_instance()->get_default_participant_qos();
   qos.name(options.service);
-  const std::string data = encodePeer({options.cell, options.run, options.service});
+  const std::string data = encodePeer(self);
   qos.user_data().data_vec({data.begin(), data.end()});
 
   qos.transport().use_builtin_transports = false;
@@ -80,9 +88,15 @@ Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_
   if (options.domain < 0 || options.domain > kMaxDomain) {
     throw UsageError("DDS domain: expected 0 to 232, found " + std::to_string(options.domain));
   }
-  participant = DomainParticipantFactory::get_instance()->create_participant(options.domain, participantQos(options),
-                                                                             this, StatusMask::none());
+  const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+  self = {.cell = options.cell,
+          .run = options.run,
+          .service = options.service,
+          .started_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(since_epoch).count()};
+  participant = DomainParticipantFactory::get_instance()->create_participant(
+      options.domain, participantQos(options, self), this, StatusMask::none());
   if (participant == nullptr) refuse("a participant in domain " + std::to_string(options.domain));
+  self.prefix = toPrefix(participant->guid());
   PublisherQos publisher_qos = participant->get_default_publisher_qos();
   SubscriberQos subscriber_qos = participant->get_default_subscriber_qos();
   publisher_qos.partition().push_back(options.partition.c_str());
@@ -100,22 +114,21 @@ Participant::Impl::~Impl() {
 }
 
 void Participant::Impl::on_participant_discovery(DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) {
+  const GuidPrefix prefix = toPrefix(info.info.m_guid);
+  if (info.status != rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT &&
+      info.status != rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT) {
+    const std::lock_guard lock(mutex);
+    peers.erase(prefix);
+    return;
+  }
   const auto& data = info.info.m_userData;
-  const std::optional<Peer> peer = decodePeer({data.begin(), data.end()});
+  const std::optional<Peer> peer = decodePeer({data.begin(), data.end()}, prefix);
   if (!peer) return;
-  GuidPrefix prefix;
-  std::copy_n(info.info.m_guid.guidPrefix.value, prefix.size(), prefix.begin());
-  const bool joined = info.status == rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT ||
-                      info.status == rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT;
   {
     const std::lock_guard lock(mutex);
-    if (joined) {
-      peers[prefix] = *peer;
-    } else {
-      peers.erase(prefix);
-    }
+    peers[prefix] = *peer;
   }
-  if (joined && on_peer) on_peer(*peer);
+  if (on_peer) on_peer(*peer);
 }
 
 void Participant::Impl::on_publisher_discovery(DomainParticipant*, rtps::WriterDiscoveryInfo&& info) {
@@ -180,6 +193,23 @@ std::vector<Peer> Participant::peers() const {
   std::vector<Peer> result;
   for (const auto& [prefix, peer] : impl_->peers) result.push_back(peer);
   return result;
+}
+
+bool Participant::isSecondCopy(const Guid& writer) const {
+  const std::lock_guard lock(impl_->mutex);
+  const auto found = impl_->peers.find(prefixOf(writer));
+  if (found == impl_->peers.end()) return false;
+  const Peer& peer = found->second;
+  return std::any_of(impl_->peers.begin(), impl_->peers.end(), [&](const auto& entry) {
+    const Peer& other = entry.second;
+    return other.cell == peer.cell && other.run == peer.run && other.service == peer.service && isElder(other, peer);
+  });
+}
+
+const Peer& Participant::self() const { return impl_->self; }
+
+bool isElder(const Peer& a, const Peer& b) {
+  return std::tie(a.started_ns, a.prefix) < std::tie(b.started_ns, b.prefix);
 }
 
 void Participant::watchWriters(WriterCallback callback) {

@@ -1,6 +1,7 @@
 /// One process's membership in a DDS domain: discovery settings, transport, and who else is there.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -20,12 +21,16 @@ struct ParticipantOptions {
   Transport transport = Transport::kUdp;
 };
 
-/// Another process of Baton in the domain, as its discovery data tell.
+/// A process of Baton in the domain, as its discovery data tell.
 struct Peer {
   std::string cell;
   std::string run;
   std::string service;
+  std::int64_t started_ns = 0;  // since the epoch, by its own clock
+  GuidPrefix prefix{};
 };
+/// The same answer in every process that asks. Clocks of different hosts must agree better than people start things.
+[[nodiscard]] bool isElder(const Peer& a, const Peer& b);
 
 /// A writer somebody has, ours or not, found by discovery.
 struct DiscoveredWriter {
@@ -58,6 +63,11 @@ class Participant {
   /// The Baton process behind a GUID prefix, if discovery has told.
   [[nodiscard]] std::optional<Peer> peer(const GuidPrefix& prefix) const;
   [[nodiscard]] std::vector<Peer> peers() const;
+  /// Whether a sample comes from a second copy of a service that has not given way yet. Not for services that may be
+  /// started again: a process that was killed is remembered for the length of its lease.
+  [[nodiscard]] bool isSecondCopy(const Guid& writer) const;
+  /// This process as others see it.
+  [[nodiscard]] const Peer& self() const;
 
   /// Calls back for every writer of somebody else in the domain, those known already first.
   void watchWriters(WriterCallback callback);

@@ -28,6 +28,7 @@ struct Participant::Impl final : eprosima::fastdds::dds::DomainParticipantListen
                                        bool keyed);
 
   PeerCallback on_peer;
+  Peer self;
   eprosima::fastdds::dds::DomainParticipant* participant = nullptr;
   eprosima::fastdds::dds::Publisher* publisher = nullptr;
   eprosima::fastdds::dds::Subscriber* subscriber = nullptr;

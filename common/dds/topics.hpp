@@ -2,6 +2,8 @@
 /// none.
 #pragma once
 
+#include <string_view>
+
 #include "dds/types.hpp"
 #include "msg/loop.h"
 #include "msg/record.h"
@@ -11,8 +13,15 @@
 
 namespace baton::dds {
 
+/// Topics of which a writer's latest word is all that counts are called so; of the others every sample matters.
+[[nodiscard]] constexpr bool isStatusTopic(std::string_view name) { return name.ends_with("_status"); }
+
 template <class T>
 struct Topic {
+  consteval Topic(const char* name_in, const char* type_in, Profile profile_in)
+      : name(name_in), type(type_in), profile(profile_in) {
+    if (isStatusTopic(name) != (profile == Profile::kStatus)) throw "a topic's name and its profile disagree";
+  }
   const char* name;
   const char* type;
   Profile profile;

@@ -30,14 +30,18 @@ class Writer {
   Writer(Participant& participant, const Topic<T>& topic, MatchCallback on_match = {})
       : topic_(topic.name), buffer_(maxPayload<T>()), raw_(participant, endpointOptions(topic), std::move(on_match)) {}
 
-  /// Never blocks, and allocates nothing of its own. Returns false when DDS refuses the sample.
+  /// Never blocks, and allocates nothing of its own. Returns false when DDS refuses the sample, which is counted.
   bool write(const T& message) noexcept {
     payload_ = encode(message, std::span(buffer_));
-    if (payload_.empty() || !raw_.write(payload_)) return false;
+    if (payload_.empty() || !raw_.write(payload_)) {
+      ++refused_;
+      return false;
+    }
     stream_hash_ = chainHash(stream_hash_, payload_);
     return true;
   }
 
+  [[nodiscard]] std::uint64_t refused() const { return refused_; }
   /// What write() sent last.
   [[nodiscard]] std::span<const std::byte> payload() const { return payload_; }
   /// Of all payloads in order.
@@ -51,6 +55,7 @@ class Writer {
   std::vector<std::byte> buffer_;
   std::span<const std::byte> payload_;
   std::uint64_t stream_hash_ = 0;
+  std::uint64_t refused_ = 0;
   RawWriter raw_;
 };
 

@@ -21,4 +21,13 @@ std::string toString(const Guid& guid) {
   return text;
 }
 
+const char* toString(Transport transport) { return transport == Transport::kSharedMemory ? "shm" : "udp"; }
+
+std::optional<Transport> transportCalled(const std::string& name) {
+  for (const Transport transport : {Transport::kUdp, Transport::kSharedMemory}) {
+    if (name == toString(transport)) return transport;
+  }
+  return std::nullopt;
+}
+
 }  // namespace baton::dds

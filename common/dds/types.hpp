@@ -5,6 +5,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -45,5 +46,8 @@ enum class Transport {
   kUdp,          // loopback UDP: survives any kill, the default
   kSharedMemory  // faster, but kill -9 leaves files behind and delays the next start
 };
+/// "udp", "shm", and back; nothing for another word.
+[[nodiscard]] const char* toString(Transport transport);
+[[nodiscard]] std::optional<Transport> transportCalled(const std::string& name);
 
 }  // namespace baton::dds

@@ -9,6 +9,17 @@ void Barrier::require(const std::string& topic, std::function<std::set<dds::Guid
   if (!peers.empty()) requirements_.push_back({topic, std::move(matched), std::move(peers)});
 }
 
+std::optional<dds::Peer> Barrier::eldest(const std::string& service) const {
+  std::optional<dds::Peer> eldest;
+  for (const Requirement& requirement : requirements_) {
+    for (const dds::GuidPrefix& prefix : requirement.matched()) {
+      const auto peer = participant_.peer(prefix);
+      if (peer && peer->service == service && (!eldest || isElder(*peer, *eldest))) eldest = peer;
+    }
+  }
+  return eldest;
+}
+
 std::string Barrier::missing() const {
   std::string text;
   for (const Requirement& requirement : requirements_) {

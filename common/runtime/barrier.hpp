@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -20,6 +21,9 @@ class Barrier {
   /// them.
   void require(const std::string& topic, std::function<std::set<dds::GuidPrefix>()> matched,
                std::vector<std::string> peers);
+
+  /// The eldest process of that name among those the endpoints are matched with.
+  [[nodiscard]] std::optional<dds::Peer> eldest(const std::string& service) const;
 
   /// What is still missing, "plant_state: environment, recorder; ...", or empty when ready.
   [[nodiscard]] std::string missing() const;

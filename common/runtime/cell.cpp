@@ -1,14 +1,15 @@
 #include "runtime/cell.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <nlohmann/json.hpp>
+#include <fstream>
+#include <utility>
 
 #include "base/error.hpp"
+#include "runtime/json.hpp"
 #include "runtime/paths.hpp"
 
 namespace baton {
@@ -31,7 +32,7 @@ std::optional<RunInfo> readInfo(const fs::path& file) {
     return RunInfo{.cell = json.at("cell"),
                    .run = json.at("run"),
                    .domain = json.at("domain"),
-                   .transport = json.at("transport") == "shm" ? dds::Transport::kSharedMemory : dds::Transport::kUdp,
+                   .transport = dds::transportCalled(json.at("transport")).value(),
                    .scenario = json.at("scenario"),
                    .folder = json.at("folder"),
                    .recording = json.at("recording"),
@@ -41,22 +42,33 @@ std::optional<RunInfo> readInfo(const fs::path& file) {
   }
 }
 
-std::string toText(const RunInfo& info) {
-  return nlohmann::ordered_json{
-      {"cell", info.cell},           {"run", info.run},
-      {"domain", info.domain},       {"transport", info.transport == dds::Transport::kSharedMemory ? "shm" : "udp"},
-      {"scenario", info.scenario},   {"folder", info.folder},
-      {"recording", info.recording}, {"supervisor_pid", info.supervisor_pid}}
-      .dump(1);
+std::string asText(const RunInfo& info) {
+  return toText(nlohmann::ordered_json{{"cell", info.cell},
+                                       {"run", info.run},
+                                       {"domain", info.domain},
+                                       {"transport", dds::toString(info.transport)},
+                                       {"scenario", info.scenario},
+                                       {"folder", info.folder},
+                                       {"recording", info.recording},
+                                       {"supervisor_pid", info.supervisor_pid}});
+}
+
+/// Locks of an open file, of which one can ask without taking them.
+struct flock wholeFile() {
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  return lock;
 }
 
 /// Whether somebody holds the lock on this file.
 bool isHeld(const fs::path& file) {
   const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor < 0) return false;
-  const bool is_free = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
-  close(descriptor);  // lets go of it too
-  return !is_free;
+  struct flock lock = wholeFile();
+  const bool is_held = fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  close(descriptor);
+  return is_held;
 }
 
 }  // namespace
@@ -66,7 +78,8 @@ CellLock::CellLock(const RunInfo& info) : file_(cellFile(info.domain, info.cell)
   if (descriptor_ < 0) {
     throw UnavailableError("cannot open " + file_.string() + ": " + std::strerror(errno));
   }
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+  struct flock lock = wholeFile();
+  if (fcntl(descriptor_, F_OFD_SETLK, &lock) != 0) {
     close(descriptor_);
     const std::optional<RunInfo> other = readInfo(file_);
     throw UnavailableError("cell " + info.cell + " of domain " + std::to_string(info.domain) + " is in use" +
@@ -76,7 +89,7 @@ CellLock::CellLock(const RunInfo& info) : file_(cellFile(info.domain, info.cell)
                            ": end that run with `baton down --cell " + info.cell +
                            "`, or choose another cell with --cell");
   }
-  const std::string text = toText(info);
+  const std::string text = asText(info);
   if (ftruncate(descriptor_, 0) != 0 ||
       pwrite(descriptor_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) {
     const int error = errno;
@@ -99,6 +112,19 @@ std::vector<RunInfo> activeRuns() {
     if (std::optional<RunInfo> info = readInfo(entry.path())) runs.push_back(std::move(*info));
   }
   return runs;
+}
+
+std::string keptScenario(const RunInfo& info) { return info.folder + "/scenario.yaml"; }
+std::string keptRobot(const RunInfo& info) { return info.folder + "/robot.yaml"; }
+
+void keepExperiment(const RunInfo& info, const Scenario& scenario) {
+  for (const auto& [file, text] :
+       {std::pair{keptScenario(info), scenario.text}, std::pair{keptRobot(info), scenario.robot_text}}) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << text;
+    stream.close();
+    if (!stream) throw UnavailableError("cannot write " + file + ": expected space and the right to write there");
+  }
 }
 
 fs::path runFolder(const std::string& run) {

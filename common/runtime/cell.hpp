@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dds/types.hpp"
+#include "runtime/scenario.hpp"
 
 namespace baton {
 
@@ -46,5 +47,11 @@ class CellLock {
 
 /// The folder of a run; created when missing.
 [[nodiscard]] std::filesystem::path runFolder(const std::string& run);
+
+/// The run keeps the experiment as it was, whatever becomes of the files: its services and the commands that speak to
+/// it read the copies in its folder. Throws UnavailableError when they cannot be written.
+void keepExperiment(const RunInfo& info, const Scenario& scenario);
+[[nodiscard]] std::string keptScenario(const RunInfo& info);
+[[nodiscard]] std::string keptRobot(const RunInfo& info);
 
 }  // namespace baton

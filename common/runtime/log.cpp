@@ -3,6 +3,9 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <deque>
+#include <fstream>
+
 #include "dds/participant.hpp"
 
 namespace baton {
@@ -14,6 +17,29 @@ void setUpLog(const std::string& name) {
   dds::redirectDdsLog([](int level, const std::string& text) {
     spdlog::log(level == 0 ? spdlog::level::err : spdlog::level::warn, "dds: {}", text);
   });
+}
+
+std::string lastLines(const std::filesystem::path& log, std::size_t count) {
+  std::ifstream stream(log);
+  std::deque<std::string> lines;
+  for (std::string line; std::getline(stream, line);) {
+    lines.push_back("  " + line + "\n");
+    if (lines.size() > count) lines.pop_front();
+  }
+  std::string text;
+  for (const std::string& line : lines) text += line;
+  return text;
+}
+
+std::string lastError(const std::filesystem::path& log) {
+  std::ifstream stream(log);
+  std::string last;
+  std::string error;
+  for (std::string line; std::getline(stream, line);) {
+    if (line.find(" error ") != std::string::npos || line.starts_with("baton-")) error = line;
+    last = line;
+  }
+  return error.empty() ? last : error;
 }
 
 }  // namespace baton

@@ -29,7 +29,7 @@ int runService(int argc, char** argv, const std::string& role, const std::functi
     ServiceOptions options;
     if (!parseServiceOptions(argc, argv, role, options)) return ExitCode::kOk;
     setUpLog(options.name);
-    Scenario scenario = loadScenario(options.scenario_file);
+    Scenario scenario = loadScenario(options.scenario_file, options.robot_file);
     scenario.recording.enabled = scenario.recording.enabled && options.recording;
     Service service(options, std::move(scenario));
     held.release();

@@ -78,7 +78,7 @@ struct Scenario {
 
 /// Reads and checks a scenario file and the robot file it names. Throws UsageError with file, line, what was expected
 /// and what was found.
-[[nodiscard]] Scenario loadScenario(const std::string& path);
+[[nodiscard]] Scenario loadScenario(const std::string& path, const std::string& robot_path = "");
 
 /// The same from text already in memory (a recording's attachments); `file` is used in messages, `robot_text` stands in
 /// for the robot file.

@@ -333,10 +333,11 @@ const ControllerConfig& Scenario::controller(const std::string& controller_name)
   throw UsageError(unknownName("controller", controller_name, known));
 }
 
-Scenario loadScenario(const std::string& path) {
+Scenario loadScenario(const std::string& path, const std::string& robot_path) {
   namespace fs = std::filesystem;
   Scenario scenario = readScenario(path, readYamlFile(path), [&](const YamlNode& node) -> RobotFile {
-    const fs::path robot = (fs::path(path).parent_path() / node.text()).lexically_normal();
+    const fs::path named = (fs::path(path).parent_path() / node.text()).lexically_normal();
+    const fs::path robot = robot_path.empty() ? named : fs::path(robot_path);
     return at(node, [&] {
       return RobotFile{robot.string(), fs::absolute(robot).lexically_normal().string(), readYamlFile(robot.string())};
     });

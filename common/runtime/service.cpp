@@ -19,7 +19,8 @@ Service::Service(ServiceOptions options, Scenario scenario)
   events_ = &output(dds::topics::kEvent);
   manifest_ = &output(dds::topics::kServiceManifest);
   if (options_.role != kPlantName) {
-    input(dds::topics::kSimStatus, {kPlantName}, [this](const msg::SimStatus& status, const dds::RawSample&) {
+    input(dds::topics::kSimStatus, {kPlantName}, [this](const msg::SimStatus& status, const dds::RawSample& sample) {
+      if (participant_.isSecondCopy(sample.writer)) return;
       const bool finished = status.state() == msg::SIM_STATE_FINISHED;
       if (finished || status.state() == msg::SIM_STATE_ABORTED) runEnded(status.step(), finished);
     });
@@ -44,25 +45,35 @@ void Service::addToManifest(dds::Profile profile, std::function<msg::StreamManif
   if (profile != dds::Profile::kStatus) manifests_.push_back(std::move(manifest));
 }
 
+bool Service::isRival(const dds::Peer& peer) const {
+  return peer.cell == options_.cell && peer.service == options_.name &&
+         (peer.run == options_.run || options_.role == kPlantName);
+}
+
+/// Another one of us: the same run's second copy of a service, or the plant of another run in the cell. The younger
+/// gives way, so that a run that has started is left alone.
+void Service::giveWayToElders() {
+  for (const dds::Peer& peer : participant_.peers()) {
+    if (!isRival(peer) || !isElder(peer, participant_.self())) continue;
+    return giveWay(peer.run == options_.run ? "run " + peer.run + " has its " + peer.service + " already"
+                                            : "cell " + peer.cell + " has a plant of run " + peer.run +
+                                                  " already: end that run or choose another --cell");
+  }
+}
+
 void Service::peerJoined(const dds::Peer& peer) {
+  giveWayToElders();
+  if (!gave_way_ && isRival(peer)) {
+    event(msg::SEVERITY_WARNING, "intruder", "a second " + peer.service + " of run " + peer.run + "; this one goes on");
+  }
   checkBarrier();
-  if (peer.cell != options_.cell || peer.service != options_.name) return;
-  // Another one of us. A run that has started is left alone, so it is the newcomer that gives way: the same run's
-  // second copy of a service, or the plant of a newer run in a cell that is taken.
-  std::string why;
-  if (peer.run == options_.run) {
-    why = "a second " + peer.service + " in run " + peer.run;
-  } else if (options_.role == kPlantName && peer.run < options_.run) {
-    why = "cell " + peer.cell + " has a plant of run " + peer.run + " already: end that run or choose another --cell";
-  }
-  if (why.empty()) return;
-  if (ready_) {
-    event(msg::SEVERITY_WARNING, "intruder", why + "; this one goes on");
-  } else {
-    // Nothing is published: the name is the other one's, who must not be taken for failed.
-    spdlog::error("{}; this one stops", why);
-    stop(ExitCode::kUnavailable);
-  }
+}
+
+void Service::giveWay(const std::string& why) {
+  // Nothing is published: the name is the other one's, who must not be taken for failed.
+  if (!gave_way_) spdlog::error("{}; this one stops", why);
+  gave_way_ = true;
+  stop(ExitCode::kUnavailable);
 }
 
 void Service::matchesChanged() {
@@ -71,9 +82,14 @@ void Service::matchesChanged() {
 
 void Service::checkBarrier() {
   if (ready_) return;
+  giveWayToElders();
+  if (gave_way_) return;
   const std::string missing = barrier_.missing();
   ready_ = missing.empty();
-  publishStatus(ready_ ? msg::SERVICE_READY : msg::SERVICE_STARTING, ready_ ? "" : "waits for " + missing);
+  if (ready_ || missing != told_missing_) {
+    publishStatus(ready_ ? msg::SERVICE_READY : msg::SERVICE_STARTING, ready_ ? "" : "waits for " + missing);
+  }
+  told_missing_ = missing;
   if (!ready_) return;
   spdlog::info("ready");
   if (on_ready_) on_ready_();
@@ -86,6 +102,11 @@ void Service::publishStatus(msg::ServiceState state, const std::string& text) {
   status.state(state);
   status.pid(getpid());
   status.text(text);
+  if (options_.role == kPlantName) {
+    status.plant(participant_.self().prefix);
+  } else if (const auto plant = barrier_.eldest(kPlantName)) {
+    status.plant(plant->prefix);
+  }
   status_->write(status);
 }
 
@@ -119,10 +140,17 @@ void Service::runEnded(std::uint64_t step, bool clean) {
   asio::post(executor_, [this] { publishManifest(); });
 }
 
+void Service::tellLosses() {
+  for (const auto& loss : losses_) {
+    if (const std::string text = loss(); !text.empty()) spdlog::warn("{}", text);
+  }
+}
+
 void Service::publishManifest() {
   const std::lock_guard lock(mutex_);
   if (manifest_out_) return;
   manifest_out_ = true;
+  tellLosses();
   msg::ServiceManifest message;
   message.name(options_.name);
   for (const auto& manifest : manifests_) {

@@ -86,6 +86,8 @@ class Service {
   [[nodiscard]] boost::asio::io_context& executor() { return executor_; }
   [[nodiscard]] std::mutex& mutex() { return mutex_; }
   [[nodiscard]] StepStamp stampOf(std::uint64_t step) const;
+  /// Ends run() because another process has this one's place; any thread.
+  void giveWay(const std::string& why);
   /// Matched with everybody it needs; any thread.
   [[nodiscard]] bool isReady() const { return ready_; }
   /// Called once on the executor when the service becomes ready.
@@ -93,7 +95,10 @@ class Service {
 
  private:
   void awaitSignal();
+  [[nodiscard]] bool isRival(const dds::Peer& peer) const;
+  void giveWayToElders();
   void peerJoined(const dds::Peer& peer);
+  void tellLosses();
   void checkBarrier();
   void publishManifest();
   void publishStatus(msg::ServiceState state, const std::string& text);
@@ -110,9 +115,11 @@ class Service {
   Barrier barrier_{participant_};
   std::vector<std::shared_ptr<void>> endpoints_;  // destroyed before the participant, in reverse order of opening
   std::vector<std::function<msg::StreamManifest()>> manifests_;
+  std::vector<std::function<std::string()>> losses_;  // one sentence each, empty when there are none
   dds::Writer<msg::ServiceStatus>* status_ = nullptr;
   dds::Writer<msg::Event>* events_ = nullptr;
   dds::Writer<msg::ServiceManifest>* manifest_ = nullptr;
+  std::string told_missing_ = "?";  // what the status said last
   std::function<void()> on_end_;
   std::function<void()> on_ready_;
   std::function<void()> on_signal_;
@@ -121,6 +128,7 @@ class Service {
   std::optional<std::uint64_t> last_done_;
   std::optional<std::uint64_t> end_step_;
   std::atomic<bool> ready_{false};
+  std::atomic<bool> gave_way_{false};
   bool is_closed_ = false;     // guarded by mutex_: run() is over, and with it the life of what the handlers belong to
   bool manifest_out_ = false;  // guarded by mutex_
   ExitCode exit_code_ = ExitCode::kOk;
@@ -145,6 +153,10 @@ dds::Writer<T>& Service::output(const dds::Topic<T>& topic, const std::vector<st
   require(
       topic.name, [raw = &writer->raw()] { return raw->matched(); }, readers);
   addToManifest(topic.profile, [raw = writer.get()] { return manifestOf(*raw); });
+  losses_.push_back([raw = writer.get()]() -> std::string {
+    if (raw->refused() == 0) return {};
+    return "DDS refused " + std::to_string(raw->refused()) + " samples on " + raw->topic();
+  });
   endpoints_.push_back(writer);
   return *writer;
 }
@@ -161,6 +173,11 @@ void Service::input(const dds::Topic<T>& topic, const std::vector<std::string>& 
       [this] { matchesChanged(); });
   require(
       topic.name, [raw = &reader->raw()] { return raw->matched(); }, writers);
+  losses_.push_back([raw = reader.get(), name = std::string(topic.name)]() -> std::string {
+    if (raw->rejected() == 0 && raw->raw().lost() == 0) return {};
+    return name + ": " + std::to_string(raw->raw().lost()) + " samples lost on the way, " +
+           std::to_string(raw->rejected()) + " that could not be read";
+  });
   endpoints_.push_back(reader);
 }
 

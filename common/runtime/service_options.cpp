@@ -1,11 +1,8 @@
 #include "runtime/service_options.hpp"
 
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
-#include <cctype>
 
-#include "base/error.hpp"
+#include "runtime/command_line.hpp"
 
 namespace baton {
 
@@ -23,11 +20,11 @@ bool parseServiceOptions(int argc, char** argv, const std::string& role, Service
   options.name = role;
   CLI::App app{"The " + role + " of a Baton run. The supervisor starts it; `baton up` starts the supervisor."};
   app.add_option("--scenario", options.scenario_file, "scenario file, the whole experiment")->required();
-  app.add_option("--cell", options.cell, "cell: one robot with its parts")->check(cellName())->capture_default_str();
+  app.add_option("--robot", options.robot_file, "robot file to use instead of the one that the scenario names");
+  addCell(app, options.cell);
   app.add_option("--run", options.run, "id of the run within the cell")->required();
-  app.add_option("--domain", options.domain, "DDS domain")->check(CLI::Range(0, 232))->capture_default_str();
-  std::string transport = "udp";
-  app.add_option("--transport", transport, "udp or shm")->check(CLI::IsMember({"udp", "shm"}))->capture_default_str();
+  addDomain(app, options.domain);
+  addTransport(app, options.transport);
   bool no_recording = false;
   app.add_flag("--no-recording", no_recording, "no recorder takes part in this run");
   if (role == "controller") {
@@ -35,27 +32,9 @@ bool parseServiceOptions(int argc, char** argv, const std::string& role, Service
     app.add_option("--law", options.law, "its law, to be checked against the scenario");
   }
   if (role == "recorder") app.add_option("--out", options.out, "file to write (MCAP)")->required();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp& help) {
-    app.exit(help);
-    return false;
-  } catch (const CLI::ParseError& error) {
-    throw UsageError(std::string(error.what()) + " (see --help)");
-  }
-  options.transport = transport == "shm" ? dds::Transport::kSharedMemory : dds::Transport::kUdp;
+  if (!parseCommandLine(app, argc, argv)) return false;
   options.recording = !no_recording;
   return true;
-}
-
-CLI::Validator cellName() {
-  return {[](std::string& name) -> std::string {
-            const bool is_good = !name.empty() && name.size() < 32 && std::all_of(name.begin(), name.end(), [](char c) {
-              return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
-            });
-            return is_good ? "" : "expected 1 to 31 of A-Z a-z 0-9 _ -, found " + name;
-          },
-          "NAME"};
 }
 
 std::vector<std::string> toArguments(const ServiceOptions& options) {
@@ -63,7 +42,8 @@ std::vector<std::string> toArguments(const ServiceOptions& options) {
                                      "--cell",      options.cell,
                                      "--run",       options.run,
                                      "--domain",    std::to_string(options.domain),
-                                     "--transport", options.transport == dds::Transport::kSharedMemory ? "shm" : "udp"};
+                                     "--transport", dds::toString(options.transport)};
+  if (!options.robot_file.empty()) arguments.insert(arguments.end(), {"--robot", options.robot_file});
   if (!options.recording) arguments.emplace_back("--no-recording");
   if (options.role == "controller") arguments.insert(arguments.end(), {"--name", options.name, "--law", options.law});
   if (options.role == "recorder") arguments.insert(arguments.end(), {"--out", options.out});

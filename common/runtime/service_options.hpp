@@ -1,7 +1,6 @@
 /// What every service is told on its command line; the supervisor writes it, a person may.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@ struct ServiceOptions {
   std::string role;  // "plant", "controller", ...
   std::string name;  // unique in the run; the role unless it is a controller
   std::string scenario_file;
+  std::string robot_file;    // empty: the one the scenario names
   std::string cell = "lab";  // one robot with its parts
   std::string run;           // this run of the cell
   int domain = 0;
@@ -38,10 +38,6 @@ struct ServiceOptions {
 [[nodiscard]] std::vector<std::string> controllerNames(const Scenario& scenario);
 /// `names` and, in a run that is recorded, the recorder: the readers of a topic that must be whole in the recording.
 [[nodiscard]] std::vector<std::string> withRecorder(std::vector<std::string> names, const Scenario& scenario);
-
-/// Refuses a cell's name that is not 1 to 31 of A-Z a-z 0-9 _ -: it becomes part of a file's name and of a DDS
-/// partition.
-[[nodiscard]] CLI::Validator cellName();
 
 inline constexpr const char* kPlantName = "plant";
 inline constexpr const char* kEnvironmentName = "environment";

@@ -14,8 +14,9 @@ namespace baton {
 /// arrays of kWindow entries, at slot(step).
 class StepInputs {
  public:
-  static constexpr std::size_t kWindow =
-      64;  // steps a late input may be behind before a step that nobody waits for is lost
+  /// How many steps a service that nobody waits for may lag behind before it loses one. As many as the plant may run
+  /// ahead of the recorder.
+  static constexpr std::size_t kWindow = 512;
   static constexpr std::size_t kMaxInputs = 4;
 
   /// @param inputs how many inputs a step needs, 1 to kMaxInputs.

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "mcap/reader.hpp"
+#include "runtime/json.hpp"
 
 namespace baton {
 namespace {
@@ -253,7 +253,7 @@ void addBagCommand(CLI::App& app, ExitCode& exit_code) {
     const BagSummary summary = summarize(request->file);
     if (request->json) {
       // Text in a recording may come from anywhere.
-      std::puts(toJson(summary).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+      std::puts(toText(toJson(summary)).c_str());
     } else {
       printText(summary);
     }

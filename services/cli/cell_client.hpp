@@ -29,8 +29,10 @@ class CellClient {
 
   /// Collects samples of a topic until `enough(all so far)`, at most `patience`. Returns what came.
   template <class T>
-  std::vector<T> collect(const dds::Topic<T>& topic, const std::function<bool(const std::vector<T>&)>& enough,
-                         std::chrono::milliseconds patience = kPatience);
+  std::vector<T> collect(
+      const dds::Topic<T>& topic, const std::function<bool(const std::vector<T>&)>& enough,
+      std::chrono::milliseconds patience = kPatience,
+      const std::function<bool(const dds::RawSample&)>& accept = [](const auto&) { return true; });
 
   /// The newest sample of a topic with one writer, or nothing within `patience`.
   template <class T>
@@ -58,9 +60,11 @@ class CellClient {
 
 template <class T>
 std::vector<T> CellClient::collect(const dds::Topic<T>& topic, const std::function<bool(const std::vector<T>&)>& enough,
-                                   std::chrono::milliseconds patience) {
+                                   std::chrono::milliseconds patience,
+                                   const std::function<bool(const dds::RawSample&)>& accept) {
   std::vector<T> samples;
-  const dds::Reader<T> reader(participant_, topic, [&](const T& message, const dds::RawSample&) {
+  const dds::Reader<T> reader(participant_, topic, [&](const T& message, const dds::RawSample& sample) {
+    if (!accept(sample)) return;
     const std::lock_guard lock(mutex_);
     samples.push_back(message);
     changed_.notify_all();
@@ -73,7 +77,8 @@ std::vector<T> CellClient::collect(const dds::Topic<T>& topic, const std::functi
 template <class T>
 std::optional<T> CellClient::latest(const dds::Topic<T>& topic, std::chrono::milliseconds patience) {
   const std::vector<T> samples = collect<T>(
-      topic, [](const std::vector<T>& all) { return !all.empty(); }, patience);
+      topic, [](const std::vector<T>& all) { return !all.empty(); }, patience,
+      [this](const dds::RawSample& sample) { return !participant_.isSecondCopy(sample.writer); });
   return samples.empty() ? std::nullopt : std::optional(samples.back());
 }
 

@@ -13,6 +13,7 @@
 #include "dds/topics.hpp"
 #include "mcap/reader.hpp"
 #include "run_commands.hpp"
+#include "runtime/log.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/scenario.hpp"
 

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "control/law.hpp"
+#include "runtime/json.hpp"
 
 namespace baton {
 namespace {
@@ -80,7 +80,7 @@ void addLawsCommand(CLI::App& app) {
                       {"requires_contact", law.requires_contact},
                       {"parameters", parameters}});
     }
-    std::cout << list.dump(1) << '\n';
+    std::cout << toText(list) << '\n';
   });
 }
 

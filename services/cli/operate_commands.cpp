@@ -6,10 +6,11 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cell_client.hpp"
+#include "messages/state_names.hpp"
 #include "run_commands.hpp"
+#include "runtime/json.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/service_options.hpp"
 
@@ -23,48 +24,6 @@ struct Target {
   int domain = 0;
   bool json = false;
 };
-
-const char* nameOf(msg::SimState state) {
-  switch (state) {
-    case msg::SIM_STATE_STARTING: return "starting";
-    case msg::SIM_STATE_RUNNING: return "running";
-    case msg::SIM_STATE_PAUSED: return "paused";
-    case msg::SIM_STATE_FINISHED: return "finished";
-    case msg::SIM_STATE_ABORTED: return "aborted";
-  }
-  return "?";
-}
-
-const char* nameOf(msg::ControllerState state) {
-  switch (state) {
-    case msg::CONTROLLER_STARTING: return "starting";
-    case msg::CONTROLLER_COLD: return "cold";
-    case msg::CONTROLLER_STANDBY: return "standby";
-    case msg::CONTROLLER_ACTIVE: return "active";
-    case msg::CONTROLLER_FAILED: return "failed";
-  }
-  return "?";
-}
-
-const char* nameOf(msg::ServiceState state) {
-  switch (state) {
-    case msg::SERVICE_STARTING: return "starting";
-    case msg::SERVICE_READY: return "ready";
-    case msg::SERVICE_DONE: return "done";
-    case msg::SERVICE_FAILED: return "failed";
-  }
-  return "?";
-}
-
-const char* nameOf(msg::RecorderState state) {
-  switch (state) {
-    case msg::RECORDER_WAITING: return "waiting";
-    case msg::RECORDER_RECORDING: return "recording";
-    case msg::RECORDER_CLOSED: return "closed";
-    case msg::RECORDER_FAILED: return "failed";
-  }
-  return "?";
-}
 
 /// Latest sample of each name, once all the expected ones have spoken.
 template <class T>
@@ -109,7 +68,7 @@ std::string effortText(const std::vector<double>& efforts) {
 
 void status(const Target& target) {
   CellClient client(CellClient::find(target.domain, target.cell));
-  const Scenario scenario = loadScenario(client.info().scenario);
+  const Scenario scenario = loadScenario(keptScenario(client.info()), keptRobot(client.info()));
   const msg::SimStatus sim = simStatus(client);
   std::vector<std::string> expected = serviceNames(scenario);
   if (client.info().recording.empty()) std::erase(expected, kRecorderName);
@@ -119,7 +78,7 @@ void status(const Target& target) {
     Json json{{"run", client.info().run},
               {"cell", client.info().cell},
               {"scenario", client.info().scenario},
-              {"state", nameOf(sim.state())},
+              {"state", toString(sim.state())},
               {"step", sim.step()},
               {"end_step", sim.end_step()},
               {"sim_time_s", time_s},
@@ -133,16 +92,16 @@ void status(const Target& target) {
     for (const auto& [name, service] : services) {
       json["services"].push_back({{"name", name},
                                   {"role", service.role().c_str()},
-                                  {"state", nameOf(service.state())},
+                                  {"state", toString(service.state())},
                                   {"pid", service.pid()},
                                   {"text", service.text().c_str()}});
     }
-    std::cout << json.dump(1) << '\n';
+    std::cout << toText(json) << '\n';
     return;
   }
   std::printf("run %s of %s in cell %s, domain %d\n", client.info().run.c_str(), client.info().scenario.c_str(),
               client.info().cell.c_str(), client.info().domain);
-  std::printf("%s at step %llu", nameOf(sim.state()), ull{sim.step()});
+  std::printf("%s at step %llu", toString(sim.state()), ull{sim.step()});
   if (sim.end_step() > 0) std::printf(" of %llu", ull{sim.end_step()});
   std::printf(", %.4f s of motion in %.2f s, %s%s, %s holds the baton\n", time_s, sim.elapsed_s(),
               sim.mode() == msg::SIM_MODE_REALTIME ? "realtime" : "lockstep",
@@ -150,14 +109,14 @@ void status(const Target& target) {
               sim.holder().size() > 0 ? sim.holder().c_str() : "the brake");
   if (sim.waiting_for().size() > 0) std::printf("waits for %s\n", sim.waiting_for().c_str());
   for (const auto& [name, service] : services) {
-    std::printf("  %-16s %-12s %-9s pid %-8d %s\n", name.c_str(), service.role().c_str(), nameOf(service.state()),
+    std::printf("  %-16s %-12s %-9s pid %-8d %s\n", name.c_str(), service.role().c_str(), toString(service.state()),
                 static_cast<int>(service.pid()), service.text().c_str());
   }
 }
 
 void controllers(const Target& target) {
   CellClient client(CellClient::find(target.domain, target.cell));
-  const Scenario scenario = loadScenario(client.info().scenario);
+  const Scenario scenario = loadScenario(keptScenario(client.info()), keptRobot(client.info()));
   const auto all = latestByName(client, dds::topics::kControllerStatus, controllerNames(scenario));
   Json json = Json::array();
   if (!target.json)
@@ -177,19 +136,19 @@ void controllers(const Target& target) {
     if (target.json) {
       json.push_back({{"name", config.name},
                       {"law", one.law().c_str()},
-                      {"state", nameOf(one.state())},
+                      {"state", toString(one.state())},
                       {"step", one.step()},
                       {"uses_force", one.uses_force()},
                       {"effort", one.effort()},
                       {"effort_gap", one.effort_gap()},
                       {"text", one.text().c_str()}});
     } else {
-      std::printf("%-16s %-28s %-9s %10llu  %-32s %s%s\n", config.name.c_str(), one.law().c_str(), nameOf(one.state()),
-                  ull{one.step()}, effortText(one.effort()).c_str(), effortText(one.effort_gap()).c_str(),
-                  one.text().c_str());
+      std::printf("%-16s %-28s %-9s %10llu  %-32s %s%s\n", config.name.c_str(), one.law().c_str(),
+                  toString(one.state()), ull{one.step()}, effortText(one.effort()).c_str(),
+                  effortText(one.effort_gap()).c_str(), one.text().c_str());
     }
   }
-  if (target.json) std::cout << json.dump(1) << '\n';
+  if (target.json) std::cout << toText(json) << '\n';
 }
 
 void swap(const Target& target, const std::string& name, std::uint64_t at_step, bool force, ExitCode& exit_code) {
@@ -215,16 +174,15 @@ void swap(const Target& target, const std::string& name, std::uint64_t at_step, 
   }
   exit_code = outcome->done() ? ExitCode::kOk : ExitCode::kFailed;
   if (target.json) {
-    std::cout << Json{{"done", outcome->done()},
-                      {"outgoing", outcome->outgoing().c_str()},
-                      {"incoming", outcome->incoming().c_str()},
-                      {"decided_at_step", outcome->decided_at_step()},
-                      {"at_step", outcome->at_step()},
-                      {"blend_steps", outcome->blend_steps()},
-                      {"raw_effort_step", outcome->raw_effort_step()},
-                      {"applied_effort_step", outcome->applied_effort_step()},
-                      {"reason", outcome->reason().c_str()}}
-                     .dump(1)
+    std::cout << toText(Json{{"done", outcome->done()},
+                             {"outgoing", outcome->outgoing().c_str()},
+                             {"incoming", outcome->incoming().c_str()},
+                             {"decided_at_step", outcome->decided_at_step()},
+                             {"at_step", outcome->at_step()},
+                             {"blend_steps", outcome->blend_steps()},
+                             {"raw_effort_step", outcome->raw_effort_step()},
+                             {"applied_effort_step", outcome->applied_effort_step()},
+                             {"reason", outcome->reason().c_str()}})
               << '\n';
   } else if (outcome->done()) {
     std::printf("%s holds the baton since step %llu, asked at step %llu\n", outcome->incoming().c_str(),
@@ -247,9 +205,9 @@ void sim(const Target& target, const msg::SimRequest& what, ExitCode& exit_code)
   if (!reply) throw UnavailableError("the plant did not answer; see `baton status`");
   exit_code = reply->accepted() ? ExitCode::kOk : ExitCode::kFailed;
   if (target.json) {
-    std::cout
-        << Json{{"accepted", reply->accepted()}, {"step", reply->step()}, {"reason", reply->reason().c_str()}}.dump(1)
-        << '\n';
+    std::cout << toText(Json{
+                     {"accepted", reply->accepted()}, {"step", reply->step()}, {"reason", reply->reason().c_str()}})
+              << '\n';
   } else if (reply->accepted()) {
     std::printf("done at step %llu\n", ull{reply->step()});
   } else {
@@ -264,15 +222,18 @@ void recordStatus(const Target& target, ExitCode& exit_code) {
   if (!status) throw UnavailableError("the recorder says nothing; see `baton logs recorder`");
   exit_code = status->state() == msg::RECORDER_FAILED ? ExitCode::kFailed : ExitCode::kOk;
   if (target.json) {
-    std::cout << Json{{"state", nameOf(status->state())}, {"path", status->path().c_str()},
-                      {"messages", status->messages()},   {"bytes", status->bytes()},
-                      {"lost", status->lost()},           {"acknowledged_step", status->acknowledged_step()},
-                      {"complete", status->complete()},   {"text", status->text().c_str()}}
-                     .dump(1)
+    std::cout << toText(Json{{"state", toString(status->state())},
+                             {"path", status->path().c_str()},
+                             {"messages", status->messages()},
+                             {"bytes", status->bytes()},
+                             {"lost", status->lost()},
+                             {"acknowledged_step", status->acknowledged_step()},
+                             {"complete", status->complete()},
+                             {"text", status->text().c_str()}})
               << '\n';
   } else {
     std::printf("%s %s\n%llu messages, %.2f MB in the file, %llu lost, every loop sample up to step %llu\n%s",
-                nameOf(status->state()), status->path().c_str(), ull{status->messages()},
+                toString(status->state()), status->path().c_str(), ull{status->messages()},
                 static_cast<double>(status->bytes()) / 1e6, ull{status->lost()}, ull{status->acknowledged_step()},
                 status->text().size() > 0 ? (std::string(status->text().c_str()) + "\n").c_str() : "");
   }

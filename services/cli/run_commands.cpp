@@ -9,8 +9,10 @@
 #include <memory>
 
 #include "cell_client.hpp"
+#include "runtime/command_line.hpp"
+#include "runtime/json.hpp"
+#include "runtime/log.hpp"
 #include "runtime/paths.hpp"
-#include "runtime/service_options.hpp"
 
 namespace baton {
 namespace {
@@ -58,11 +60,7 @@ void addRunOptions(CLI::App& command, RunRequest& request) {
   command.add_option("scenario", request.scenario, "scenario file, or the name of one that comes with Baton")
       ->required();
   addCellOptions(command, request.cell, request.domain);
-  command
-      .add_option("--transport", request.transport,
-                  "udp, or shm: faster, but after kill -9 shared memory leaves files in /dev/shm behind")
-      ->check(CLI::IsMember({"udp", "shm"}))
-      ->capture_default_str();
+  addTransport(command, request.transport);
   command.add_option("--out", request.out, "file to record to (default: in the run's folder)");
   command.add_flag("--overwrite", request.overwrite, "replace the file --out names");
   command.add_flag("--no-recording", request.no_recording, "run without a recorder");
@@ -96,9 +94,13 @@ void down(const std::string& cell, int domain, bool json, ExitCode& exit_code) {
                            ": it belongs to somebody else");
   }
   ProgressLine line;
-  for (int waited_ms = 0; activeRun(domain, cell); waited_ms += 50) {
+  const auto isThere = [&] {
+    const std::optional<RunInfo> now = activeRun(domain, cell);
+    return now && now->run == info.run;
+  };
+  for (int waited_ms = 0; isThere(); waited_ms += 50) {
     if (waited_ms > 500) line.show("waiting for the recording to be closed");
-    if (waited_ms > 60'000) {
+    if (waited_ms > 150'000) {
       throw Error(ExitCode::kFailed, "the run does not end; see " + info.folder +
                                          "/supervisor.log, and as a last resort kill -9 " +
                                          std::to_string(info.supervisor_pid) + ", which ends all its processes");
@@ -108,7 +110,7 @@ void down(const std::string& cell, int domain, bool json, ExitCode& exit_code) {
   line.show("");
   const nlohmann::ordered_json result = readResult(info.folder);
   if (json) {
-    std::cout << result.dump(1) << '\n';
+    std::cout << toText(result) << '\n';
   } else {
     printResult(result);
   }
@@ -136,8 +138,7 @@ void logs(const std::string& cell, int domain, const std::string& service, int l
     names += (names.empty() ? "" : ", ") + name;
     if (!service.empty() && name != service) continue;
     found = true;
-    std::printf("%s\n%s", entry.path().c_str(),
-                lastLines(entry.path().string(), static_cast<std::size_t>(lines)).c_str());
+    std::printf("%s\n%s", entry.path().c_str(), lastLines(entry.path(), static_cast<std::size_t>(lines)).c_str());
   }
   if (!found) throw UsageError("no log of " + service + ": expected one of " + names);
 }
@@ -145,11 +146,8 @@ void logs(const std::string& cell, int domain, const std::string& service, int l
 }  // namespace
 
 void addCellOptions(CLI::App& command, std::string& cell, int& domain) {
-  command.add_option("--cell", cell, "cell: one robot with its parts")->check(cellName())->capture_default_str();
-  command.add_option("--domain", domain, "DDS domain")
-      ->check(CLI::Range(0, 232))
-      ->envname("BATON_DOMAIN")
-      ->capture_default_str();
+  addCell(command, cell);
+  addDomain(command, domain)->envname("BATON_DOMAIN");
 }
 
 ExitCode runToTheEnd(RunSession& session) {
@@ -171,7 +169,7 @@ void addRunCommands(CLI::App& app, ExitCode& exit_code) {
     exit_code = runToTheEnd(session);
     const nlohmann::ordered_json result = session.result();
     if (*json) {
-      std::cout << result.dump(1) << '\n';
+      std::cout << toText(result) << '\n';
     } else {
       printResult(result);
     }

@@ -12,7 +12,6 @@
 #include <condition_variable>
 #include <cstdio>
 #include <cstring>
-#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -20,6 +19,7 @@
 #include <sstream>
 
 #include "cell_client.hpp"
+#include "runtime/log.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/signals.hpp"
@@ -113,7 +113,7 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
   info_.cell = request.cell;
   info_.domain = request.domain;
   info_.run = newRunId();
-  info_.transport = request.transport == "shm" ? dds::Transport::kSharedMemory : dds::Transport::kUdp;
+  info_.transport = request.transport;
   info_.folder = runFolder(info_.run).string();
   if (!request.no_recording && scenario.recording.enabled) {
     info_.recording = request.out.empty() ? info_.folder + "/" + scenario.name + ".mcap" : checkedOut(request).string();
@@ -121,9 +121,12 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
     throw UsageError("--out " + request.out + ": the scenario or --no-recording says not to record");
   }
 
-  std::vector<std::string> arguments{"--scenario",  info_.scenario,    "--cell",     info_.cell,
-                                     "--run",       info_.run,         "--domain",   std::to_string(info_.domain),
-                                     "--transport", request.transport, "--restarts", std::to_string(request.restarts)};
+  std::vector<std::string> arguments{"--scenario",  info_.scenario,
+                                     "--cell",      info_.cell,
+                                     "--run",       info_.run,
+                                     "--domain",    std::to_string(info_.domain),
+                                     "--transport", dds::toString(info_.transport),
+                                     "--restarts",  std::to_string(request.restarts)};
   if (info_.recording.empty()) {
     arguments.emplace_back("--no-recording");
   } else {
@@ -168,18 +171,6 @@ std::optional<ExitCode> RunSession::follow(const std::function<void(const std::o
     if (now && until(*now)) return std::nullopt;
     usleep(50'000);  // how often a person sees progress
   }
-}
-
-std::string lastLines(const std::string& file, std::size_t count) {
-  std::ifstream stream(file);
-  std::deque<std::string> lines;
-  for (std::string line; std::getline(stream, line);) {
-    lines.push_back("  " + line + "\n");
-    if (lines.size() > count) lines.pop_front();
-  }
-  std::string text;
-  for (const std::string& line : lines) text += line;
-  return text;
 }
 
 nlohmann::ordered_json readResult(const std::string& folder) {

@@ -18,7 +18,7 @@ struct RunRequest {
   std::string scenario;  // path or bare name
   std::string cell = "lab";
   int domain = 0;
-  std::string transport = "udp";
+  dds::Transport transport = dds::Transport::kUdp;
   std::string out;  // recording; empty: in the run's folder
   bool no_recording = false;
   bool overwrite = false;  // replace `out`
@@ -57,8 +57,5 @@ class RunSession {
 
 /// What a person wants to know of a run that has ended.
 void printResult(const nlohmann::ordered_json& result);
-
-/// The last lines of a file, indented; empty when it cannot be read.
-[[nodiscard]] std::string lastLines(const std::string& file, std::size_t count);
 
 }  // namespace baton

@@ -50,7 +50,7 @@ LawRunner::LawRunner(Service& service)
 }
 
 void LawRunner::onState(const msg::PlantState& message, const dds::RawSample& sample) {
-  if (!inputs_.wants(kState, message.step())) return;
+  if (!service_.isReady() || !inputs_.wants(kState, message.step())) return;
   const std::size_t slot = StepInputs::slot(message.step());
   RobotState decoded;  // what is refused leaves no trace
   if (!fromMessage(message, service_.scenario().robot.size(), decoded)) return;
@@ -141,7 +141,7 @@ bool LawRunner::isIncoming(const msg::SwapPlan& plan) const { return config_.nam
 
 void LawRunner::onPlan(const msg::SwapPlan& plan) {
   const bool is_outgoing = config_.name == plan.outgoing().c_str();
-  if (!isIncoming(plan) && !is_outgoing) return;
+  if (service_.isOver() || (!isIncoming(plan) && !is_outgoing)) return;
   switch (plan.phase()) {
     case msg::SWAP_PREPARE:
       if (!isIncoming(plan)) return;

@@ -25,7 +25,8 @@ WallResponder::WallResponder(Service& service)
 }
 
 void WallResponder::onState(const msg::PlantState& message) {
-  if (service_.isOver() || !fromMessage(message, service_.scenario().robot.size(), state_)) return;
+  if (!service_.isReady() || service_.isOver() || !fromMessage(message, service_.scenario().robot.size(), state_))
+    return;
   const Vector3 v_WE = state_.V_WE.head<3>();
   Contact total;
   for (const PlaneSpec& wall : service_.scenario().walls) {

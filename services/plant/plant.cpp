@@ -50,6 +50,8 @@ Plant::Plant(Service& service)
       plan_out_(service.output(dds::topics::kSwapPlan, withRecorder(controllerNames(scenario_), scenario_))),
       outcome_out_(service.output(dds::topics::kSwapOutcome, withRecorder({}, scenario_))) {
   prepare(state_message_);
+  speakers_.resize(scenario_.controllers.size());
+  successors_.resize(scenario_.controllers.size());
   scheduled_.reserve(scenario_.swaps.size() + kMaxScheduled);
   for (const PlannedSwap& swap : scenario_.swaps) {
     scheduled_.push_back({.request_id = 0, .target = memberCalled(swap.to), .at_step = swap.at_step, .force = false});
@@ -64,8 +66,9 @@ Plant::Plant(Service& service)
                 [this](const msg::JointCommand& message, const dds::RawSample& sample) { onCommand(message, sample); });
   service.input(dds::topics::kSwapAck, controllerNames(scenario_),
                 [this](const msg::SwapAck& ack, const dds::RawSample&) { onSwapAck(ack); });
-  service.input(dds::topics::kServiceStatus, servicesBut(kPlantName, scenario_),
-                [this](const msg::ServiceStatus& status, const dds::RawSample&) { onServiceStatus(status); });
+  service.input(
+      dds::topics::kServiceStatus, servicesBut(kPlantName, scenario_),
+      [this](const msg::ServiceStatus& status, const dds::RawSample& sample) { onServiceStatus(status, sample); });
   service.input(dds::topics::kSimRequest, {},
                 [this](const msg::SimRequest& request, const dds::RawSample&) { onSimRequest(request); });
   service.input(dds::topics::kSwapRequest, {},
@@ -110,6 +113,7 @@ void Plant::startWhenAllAreReady() {
   master_.start();
   started_ns_ = steadyNow();
   pacer_.anchor(0, started_ns_);
+  warned_step_ = kNever;
   arbiter_.open(0);
   service_.event(msg::SEVERITY_INFO, "start", scenario_.active + " holds the baton");
   openStep();
@@ -189,6 +193,8 @@ void Plant::proceed() {
 
 void Plant::tick() {
   if (master_.phase() != SimPhase::kRunning) return;
+  // A timer that was armed anew may have been on its way already.
+  if (!pacer_.isDue(master_.step() + 1, steadyNow())) return armTimer();
   considerSwap();
   const Hold missing = master_.inputsHold();
   if (missing == Hold::kNone) {
@@ -234,19 +240,8 @@ void Plant::endStep() {
   const std::array<std::uint64_t, 4> hashes{state_hash_, contact_hash_, outgoing_hash_, command_hash_};
   chain_hash_ = dds::chainHash(chain_hash_, std::as_bytes(std::span(hashes)));
   if (takes_over) {
-    msg::SwapOutcome outcome;
-    outcome.request_id(completed_->request_id);
-    outcome.plan_id(completed_->plan_id);
-    outcome.done(true);
-    outcome.outgoing(nameOf(completed_->outgoing));
-    outcome.incoming(nameOf(completed_->incoming));
-    outcome.decided_at_step(completed_->decided_at_step);
-    outcome.at_step(step);
-    outcome.blend_steps(scenario_.baton.blend_steps);
-    assignSequence(raw_step, outcome.raw_effort_step());
-    assignSequence(arm_.state().tau_applied - tau_before, outcome.applied_effort_step());
-    outcome.reason(completed_reason_.data());
-    outcome_out_.write(outcome);
+    completed_->at_step = step;
+    publishDone(*completed_, completed_reason_.data(), raw_step, arm_.state().tau_applied - tau_before);
     completed_.reset();
   }
   service_.stepDone(step);
@@ -272,7 +267,7 @@ void Plant::finish() {
     plan.incoming = request.target;
     plan.decided_at_step = master_.step();
     plan.at_step = request.at_step;
-    publishOutcome(plan, false, "the run has ended");
+    publishRefusal(plan, "the run has ended");
   }
   scheduled_.clear();
   publishStatus();
@@ -307,6 +302,15 @@ void Plant::armTimer() {
 
 void Plant::watchLateness() {
   const Hold hold = master_.hold();
+  constexpr double kStartWarnAfter_s = 5.0;
+  if (hold == Hold::kNotStarted) {
+    const double waiting_s = static_cast<double>(steadyNow() - made_ns_) * 1e-9;
+    if (waiting_s > kStartWarnAfter_s && warned_step_ != master_.step()) {
+      warned_step_ = master_.step();
+      service_.event(msg::SEVERITY_WARNING, "late", "the start waits for " + namesWaitedFor());
+    }
+    return;
+  }
   const bool someone_is_late = hold == Hold::kContact || hold == Hold::kCommand || hold == Hold::kHandover ||
                                hold == Hold::kSwap || hold == Hold::kRecorder;
   if (!someone_is_late) {

@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "arm.hpp"
 #include "runtime/service.hpp"
@@ -30,7 +31,7 @@ class Plant {
   void onSimRequest(const msg::SimRequest& request);
   void onSwapRequest(const msg::SwapRequest& request);
   void onSwapAck(const msg::SwapAck& ack);
-  void onServiceStatus(const msg::ServiceStatus& status);
+  void onServiceStatus(const msg::ServiceStatus& status, const dds::RawSample& sample);
 
   // The run.
   void startWhenAllAreReady();
@@ -44,11 +45,14 @@ class Plant {
   void considerSwap();
   void planSwaps();
   void publishSwapActions();
-  void publishOutcome(const HandoverPlan& plan, bool done, const char* reason);
+  void publishRefusal(const HandoverPlan& plan, const char* reason);
+  void publishDone(const HandoverPlan& plan, const char* reason, const JointVector& raw_step,
+                   const JointVector& applied_step);
   void publishStatus();
   void armTimer();
   void watchLateness();
 
+  [[nodiscard]] std::string namesWaitedFor() const;
   [[nodiscard]] int memberCalled(std::string_view name) const;
   [[nodiscard]] const std::string& nameOf(int member) const;
   [[nodiscard]] bool isRealtime() const { return scenario_.mode == SimMode::kRealtime; }
@@ -72,6 +76,14 @@ class Plant {
   std::uint64_t state_hash_ = 0;
   std::uint64_t chain_hash_ = 0;
 
+  /// The process that speaks for a controller: the first to say that it is ready, until it fails.
+  struct Speaker {
+    dds::GuidPrefix prefix{};
+    std::int32_t pid = 0;  // 0: none yet
+  };
+  std::vector<Speaker> speakers_;    // by member
+  std::vector<Speaker> successors_;  // ready before their predecessor was known to have failed
+
   std::set<std::string, std::less<>> waited_for_;  // services not ready yet
   std::optional<HandoverPlan> completed_;          // took effect at the open step: its outcome follows the motion
   ReasonText completed_reason_{};
@@ -79,10 +91,12 @@ class Plant {
   std::vector<HandoverRequest> scheduled_;          // handovers for later steps
   std::uint64_t missed_in_a_row_ = 0;
   std::uint64_t missed_ = 0;
+  const std::int64_t made_ns_ = steadyNow();
   std::int64_t started_ns_ = 0;
   std::int64_t ended_ns_ = 0;
   std::int64_t progress_ns_ = 0;  // when the open step opened
-  std::uint64_t warned_step_ = ~std::uint64_t{0};
+  static constexpr std::uint64_t kNever = ~std::uint64_t{0};
+  std::uint64_t warned_step_ = kNever;
   std::string end_reason_;
 
   dds::Writer<msg::PlantState>& state_out_;

@@ -1,5 +1,6 @@
 // What arrives at the plant: contacts, commands, the operator's requests, the services' readiness.
 #include <cmath>
+#include <utility>
 
 #include "plant.hpp"
 
@@ -16,7 +17,7 @@ void Plant::onContact(const msg::Contact& message, const dds::RawSample& sample)
 void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sample) {
   if (message.step() != master_.step()) return;
   const int member = memberCalled(message.controller().c_str());
-  if (member == kBrake) return;
+  if (member == kBrake || dds::prefixOf(sample.writer) != speakers_[static_cast<std::size_t>(member)].prefix) return;
   const bool from_holder = member == arbiter_.holder() && !master_.hasCommand();
   const bool from_outgoing = member == arbiter_.outgoingAt(message.step()) && !master_.hasOutgoingCommand();
   if (!from_holder && !from_outgoing) return;
@@ -41,17 +42,37 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
   proceed();
 }
 
-void Plant::onServiceStatus(const msg::ServiceStatus& status) {
+void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSample& sample) {
   const std::string name = status.name().c_str();
   const int member = memberCalled(name);
   if (status.state() == msg::SERVICE_READY) {
+    if (status.plant() != service_.participant().self().prefix) {
+      // Discovery may tell of the run's own plant only after everybody else has been matched.
+      return service_.giveWay(name + " answers the steps of another plant");
+    }
     waited_for_.erase(name);
-    arbiter_.memberReturned(member);
+    if (member != kBrake) {
+      // Another one of that name is heard only when this one has failed, of which word may come later.
+      Speaker& speaker = speakers_[static_cast<std::size_t>(member)];
+      const Speaker ready{dds::prefixOf(sample.writer), status.pid()};
+      if (speaker.pid == 0 || arbiter_.hasFailed(member)) {
+        speaker = ready;
+        arbiter_.memberReturned(member);
+      } else if (speaker.prefix != ready.prefix) {
+        successors_[static_cast<std::size_t>(member)] = ready;
+      }
+    }
     startWhenAllAreReady();
   } else if (status.state() == msg::SERVICE_FAILED && !master_.isOver()) {
     if (member == kBrake || master_.phase() == SimPhase::kStarting)
       return abort(name + " failed: " + status.text().c_str());
+    Speaker& speaker = speakers_[static_cast<std::size_t>(member)];
+    if (speaker.pid != status.pid()) return;  // not the one that speaks for it
     memberFailed(member, status.text().c_str());
+    if (Speaker& successor = successors_[static_cast<std::size_t>(member)]; successor.pid != 0) {
+      speaker = std::exchange(successor, {});
+      arbiter_.memberReturned(member);
+    }
     proceed();
   }
 }
@@ -114,7 +135,13 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
 void Plant::onSwapRequest(const msg::SwapRequest& request) {
   if (service_.isOver()) return;
   const int member = memberCalled(request.target().c_str());
-  if (member == kBrake) {
+  const std::uint64_t earliest = master_.step() + scenario_.baton.margin_steps + 1;
+  const bool can_wait = request.at_step() > earliest && scheduled_.size() < scheduled_.capacity() &&
+                        (scenario_.end_step == 0 || request.at_step() < scenario_.end_step);
+  if (member != kBrake && can_wait) {
+    // Asked for again when its time has come: until then nothing else is blocked.
+    scheduled_.push_back({request.request_id(), member, request.at_step(), request.force()});
+  } else if (member == kBrake) {
     arbiter_.refuseUnknown(request.request_id(), request.target().c_str(), master_.step());
   } else {
     arbiter_.request(

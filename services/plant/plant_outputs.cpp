@@ -8,7 +8,7 @@ void Plant::publishSwapActions() {
     const HandoverPlan& plan = action->plan;
     using Kind = ArbiterAction::Kind;
     if (action->kind == Kind::kDone) {
-      if (completed_) publishOutcome(*completed_, true, "it lost the baton before its first command");
+      if (completed_) publishDone(*completed_, "it lost the baton before its first command", {}, {});
       completed_ = plan;
       completed_reason_ = action->reason;
       service_.event(plan.plan_id == 0 ? msg::SEVERITY_WARNING : msg::SEVERITY_INFO, "swap",
@@ -17,7 +17,7 @@ void Plant::publishSwapActions() {
       continue;
     }
     if (action->kind == Kind::kRefused) {
-      publishOutcome(plan, false, action->reason.data());
+      publishRefusal(plan, action->reason.data());
       service_.event(msg::SEVERITY_WARNING, "swap_refused", nameOf(plan.incoming) + ": " + action->reason.data());
       continue;
     }
@@ -34,17 +34,41 @@ void Plant::publishSwapActions() {
   }
 }
 
-void Plant::publishOutcome(const HandoverPlan& plan, bool done, const char* reason) {
+namespace {
+msg::SwapOutcome outcomeOf(const HandoverPlan& plan, const char* reason) {
   msg::SwapOutcome outcome;
   outcome.request_id(plan.request_id);
   outcome.plan_id(plan.plan_id);
-  outcome.done(done);
-  outcome.outgoing(nameOf(plan.outgoing));
-  outcome.incoming(nameOf(plan.incoming));
   outcome.decided_at_step(plan.decided_at_step);
   outcome.at_step(plan.at_step);
   outcome.reason(reason);
+  return outcome;
+}
+}  // namespace
+
+void Plant::publishRefusal(const HandoverPlan& plan, const char* reason) {
+  msg::SwapOutcome outcome = outcomeOf(plan, reason);
+  outcome.outgoing(nameOf(plan.outgoing));
+  outcome.incoming(nameOf(plan.incoming));
   outcome_out_.write(outcome);
+}
+
+void Plant::publishDone(const HandoverPlan& plan, const char* reason, const JointVector& raw_step,
+                        const JointVector& applied_step) {
+  msg::SwapOutcome outcome = outcomeOf(plan, reason);
+  outcome.done(true);
+  outcome.outgoing(nameOf(plan.outgoing));
+  outcome.incoming(nameOf(plan.incoming));
+  outcome.blend_steps(scenario_.baton.blend_steps);
+  assignSequence(raw_step, outcome.raw_effort_step());
+  assignSequence(applied_step, outcome.applied_effort_step());
+  outcome_out_.write(outcome);
+}
+
+std::string Plant::namesWaitedFor() const {
+  std::string names;
+  for (const std::string& name : waited_for_) names += (names.empty() ? "" : ", ") + name;
+  return names;
 }
 
 void Plant::publishStatus() {
@@ -67,9 +91,7 @@ void Plant::publishStatus() {
   status.holder(nameOf(arbiter_.holder()));
   const Hold hold = master_.hold();
   if (hold == Hold::kNotStarted) {
-    std::string names;
-    for (const std::string& name : waited_for_) names += (names.empty() ? "" : ", ") + name;
-    status.waiting_for(names);
+    status.waiting_for(namesWaitedFor());
   } else if (hold != Hold::kNone && hold != Hold::kEnded) {
     status.waiting_for(toString(hold));
   }

@@ -1,9 +1,10 @@
 #include "ledger.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "dds/hash.hpp"
+#include "dds/topics.hpp"
+#include "runtime/json.hpp"
 
 namespace baton {
 
@@ -50,7 +51,9 @@ std::vector<std::string> Ledger::unvouched() const {
 
 std::uint64_t Ledger::missing() const {
   std::uint64_t total = 0;
-  for (const auto& [key, stream] : streams_) total += stream.missing;
+  for (const auto& [key, stream] : streams_) {
+    if (!dds::isStatusTopic(key.first)) total += stream.missing;
+  }
   return total;
 }
 
@@ -80,6 +83,7 @@ std::vector<std::string> Ledger::problems() const {
     for (std::string& problem : problemsOf(manifest)) result.push_back(std::move(problem));
   }
   for (std::string& problem : unvouched()) result.push_back(std::move(problem));
+  if (dropped_ > 0) result.push_back(std::to_string(dropped_) + " samples came faster than they could be written");
   return result;
 }
 
@@ -115,8 +119,7 @@ std::string Ledger::certificate() const {
   }
   const std::vector<std::string> found = problems();
   const nlohmann::ordered_json text{{"complete", found.empty()}, {"problems", found}, {"streams", streams}};
-  // Names of foreign topics may be any bytes; what is not UTF-8 is replaced, not thrown at.
-  return text.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return toText(text);
 }
 
 }  // namespace baton

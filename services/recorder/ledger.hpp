@@ -35,6 +35,8 @@ class Ledger {
   bool book(const Key& key, std::uint64_t sequence, std::span<const std::byte> payload);
   void addManifest(const msg::ServiceManifest& manifest);
 
+  /// So many samples came and found no room.
+  void dropped(std::uint64_t count) { dropped_ = count; }
   /// The service has failed: its manifest will not come.
   void giveUpOn(const std::string& service) { given_up_.insert(service); }
   /// Nothing more is to be expected: every manifest that still can come has, and every stream they name is here, whole.
@@ -45,6 +47,7 @@ class Ledger {
   [[nodiscard]] std::vector<std::string> problems() const;
   /// The certificate as JSON text: verdict, problems, one row a stream.
   [[nodiscard]] std::string certificate() const;
+  /// Samples that never came, on topics of which none may be missing: of a status only the latest word counts.
   [[nodiscard]] std::uint64_t missing() const;
 
  private:
@@ -55,6 +58,7 @@ class Ledger {
   std::set<std::string> services_;
   std::set<std::string> given_up_;
   std::map<Key, ReceivedStream> streams_;
+  std::uint64_t dropped_ = 0;
   std::vector<msg::ServiceManifest> manifests_;  // one a process: a service that was started again has sent two
 };
 

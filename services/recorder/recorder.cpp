@@ -1,5 +1,6 @@
 #include "recorder.hpp"
 
+#include <fnmatch.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -94,7 +95,7 @@ void Recorder::requireServices() {
           const std::lock_guard lock(topics_mutex_);
           std::set<dds::GuidPrefix> matched;
           for (const auto& known : topics_) {
-            if (known->name == name) matched.merge(known->reader->matched());
+            if (known->options.topic == name) matched.merge(known->reader->matched());
           }
           return matched;
         },
@@ -113,35 +114,52 @@ void Recorder::requireServices() {
 }
 
 void Recorder::writerFound(const dds::DiscoveredWriter& writer) {
+  // A writer's partition may be a pattern, as DDS has it.
   const std::string partition = service_.options().participant().partition;
-  if (std::find(writer.partitions.begin(), writer.partitions.end(), partition) == writer.partitions.end()) return;
+  const bool is_ours = std::any_of(writer.partitions.begin(), writer.partitions.end(), [&](const std::string& theirs) {
+    return fnmatch(theirs.c_str(), partition.c_str(), 0) == 0;
+  });
+  if (!is_ours) return;
+  const dds::EndpointOptions options{.topic = writer.topic,
+                                     .type = writer.type,
+                                     .profile = writer.transient_local ? dds::Profile::kEvent : dds::Profile::kLoop,
+                                     .keyed = writer.keyed,
+                                     .exclusive_ownership = writer.exclusive_ownership,
+                                     .best_effort = !writer.reliable};
   const std::lock_guard lock(topics_mutex_);
   writer_qos_[writer.guid] = writer.qos_text;
-  const bool is_known = std::any_of(topics_.begin(), topics_.end(), [&](const auto& topic) {
-    return topic->name == writer.topic && topic->type == writer.type;
-  });
-  if (is_known) return;
-  const auto index = static_cast<std::uint32_t>(topics_.size());
+  const auto known =
+      std::find_if(topics_.begin(), topics_.end(), [&](const auto& topic) { return topic->options == options; });
+  const auto index = static_cast<std::uint32_t>(known - topics_.begin());
+  {
+    const std::lock_guard route_lock(routes_mutex_);
+    routes_[writer.guid] = index;
+  }
+  if (known != topics_.end()) return;
+  if (std::any_of(topics_.begin(), topics_.end(),
+                  [&](const auto& topic) { return topic->options.topic == writer.topic; }))
+    has_rivals_ = true;
   auto topic = std::make_unique<Topic>();
-  topic->name = writer.topic;
-  topic->type = writer.type;
+  topic->options = options;
   try {
     topic->reader = std::make_unique<dds::RawReader>(
-        service_.participant(),
-        dds::EndpointOptions{.topic = writer.topic,
-                             .type = writer.type,
-                             .profile = writer.transient_local ? dds::Profile::kEvent : dds::Profile::kLoop,
-                             .keyed = writer.keyed,
-                             .exclusive_ownership = writer.exclusive_ownership,
-                             .best_effort = !writer.reliable},
+        service_.participant(), options,
         [this, index, own = dds::prefixOf(status_out_.raw().guid())](const dds::RawSample& sample) {
-          if (dds::prefixOf(sample.writer) != own && !queue_.push(index, sample)) ++dropped_;
+          if (dds::prefixOf(sample.writer) == own || !isFor(index, sample.writer)) return;
+          if (!queue_.push(index, sample)) ++dropped_;
         },
         [this] { service_.matchesChanged(); });
   } catch (const Error& error) {
     return service_.event(msg::SEVERITY_ERROR, "record", error.what());
   }
   topics_.push_back(std::move(topic));
+}
+
+bool Recorder::isFor(std::uint32_t topic, const dds::Guid& writer) {
+  if (!has_rivals_) return true;
+  const std::lock_guard lock(routes_mutex_);
+  const auto found = routes_.find(writer);
+  return found == routes_.end() || found->second == topic;
 }
 
 // --- file thread
@@ -155,18 +173,18 @@ mcap::StringMap Recorder::channelMetadata(const dds::Guid& writer) const {
 }
 
 mcap::ChannelId Recorder::channelOf(const SampleQueue::Entry& entry, const Topic& topic) {
-  const auto found = channels_.find({topic.name, entry.writer});
+  const auto found = channels_.find({topic.options.topic, entry.writer});
   if (found != channels_.end()) return found->second;
   const auto texts = msg::allIdlTexts();
   const auto idl =
-      std::find_if(texts.begin(), texts.end(), [&](const auto& text) { return text.type_name == topic.type; });
+      std::find_if(texts.begin(), texts.end(), [&](const auto& text) { return text.type_name == topic.options.type; });
   // A type we have no IDL for is kept as bytes under its name.
   const mcap::SchemaId schema =
-      idl == texts.end() ? mcap::kNoSchema : file_.addSchema(topic.type, "omgidl", bytesOf(idl->text));
+      idl == texts.end() ? mcap::kNoSchema : file_.addSchema(topic.options.type, "omgidl", bytesOf(idl->text));
   mcap::StringMap metadata = channelMetadata(entry.writer);
-  metadata["type"] = topic.type;
-  const mcap::ChannelId channel = file_.addChannel(topic.name, "cdr", schema, metadata);
-  channels_[{topic.name, entry.writer}] = channel;
+  metadata["type"] = topic.options.type;
+  const mcap::ChannelId channel = file_.addChannel(topic.options.topic, "cdr", schema, metadata);
+  channels_[{topic.options.topic, entry.writer}] = channel;
   return channel;
 }
 
@@ -175,16 +193,16 @@ void Recorder::writeBatch(const SampleQueue::Batch& batch) {
   for (const SampleQueue::Entry& entry : batch.entries) {
     const Topic& topic = *topics_[entry.topic];
     const auto payload = batch.payload(entry);
-    if (!ledger_.book({topic.name, entry.writer}, entry.sequence, payload)) continue;
+    if (!ledger_.book({topic.options.topic, entry.writer}, entry.sequence, payload)) continue;
     file_.write(channelOf(entry, topic), static_cast<std::uint32_t>(entry.sequence),
                 static_cast<std::uint64_t>(entry.log_time_ns), static_cast<std::uint64_t>(entry.source_timestamp_ns),
                 payload);
-    if (const auto loop = loop_steps_.find(topic.name); loop != loop_steps_.end()) {
+    if (const auto loop = loop_steps_.find(topic.options.topic); loop != loop_steps_.end()) {
       loop->second = std::max(loop->second, stepOf(payload));
-    } else if (topic.name == dds::topics::kServiceManifest.name) {
+    } else if (topic.options.topic == dds::topics::kServiceManifest.name) {
       msg::ServiceManifest manifest;
       if (dds::decode(payload, manifest)) ledger_.addManifest(manifest);
-    } else if (topic.name == dds::topics::kServiceStatus.name) {
+    } else if (topic.options.topic == dds::topics::kServiceStatus.name) {
       msg::ServiceStatus status;
       if (dds::decode(payload, status) && status.state() == msg::SERVICE_FAILED)
         ledger_.giveUpOn(status.name().c_str());
@@ -231,9 +249,11 @@ void Recorder::writeFile() {
       if (now - flushed > kFlush) {
         file_.flush();
         flushed = now;
+        publishStatus(msg::RECORDER_RECORDING, "");
       }
       if (!has_run_ended_) continue;
-      if (ended == std::chrono::steady_clock::time_point{}) ended = now;
+      const bool is_first = ended == std::chrono::steady_clock::time_point{};
+      if (is_first || !batch.entries.empty()) ended = now;  // as long as something comes, more may
       if (ledger_.isSettled() || now - ended > kManifestPatience) break;
     }
     finishFile();
@@ -252,10 +272,10 @@ void Recorder::writeFile() {
 }
 
 void Recorder::finishFile() {
+  ledger_.dropped(dropped_);
   const std::vector<std::string> problems = ledger_.problems();
-  const bool is_complete = problems.empty() && dropped_ == 0;
-  std::string summary =
-      is_complete ? "complete" : "incomplete: " + (problems.empty() ? "samples were dropped" : problems.front());
+  const bool is_complete = problems.empty();
+  const std::string summary = is_complete ? "complete" : "incomplete: " + problems.front();
   file_.addMetadata("baton.certificate", {{"complete", is_complete ? "true" : "false"}, {"summary", summary}});
   file_.addAttachment("certificate.json", "application/json", 0, 0, bytesOf(ledger_.certificate()));
   file_.close();

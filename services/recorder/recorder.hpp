@@ -34,14 +34,13 @@ class Recorder {
 
  private:
   struct Topic {
-    std::string name;
-    std::string type;
-    mcap::SchemaId schema = mcap::kNoSchema;
+    dds::EndpointOptions options;
     std::unique_ptr<dds::RawReader> reader;
   };
 
   // executor
   void writerFound(const dds::DiscoveredWriter& writer);
+  [[nodiscard]] bool isFor(std::uint32_t topic, const dds::Guid& writer);
   void requireServices();
   // file thread
   void writeFile();
@@ -62,6 +61,10 @@ class Recorder {
   mutable std::mutex topics_mutex_;
   std::vector<std::unique_ptr<Topic>> topics_;
   std::map<dds::Guid, std::string> writer_qos_;
+  // A reader hears writers of a stronger QoS as well: of two on a topic, each takes its own.
+  std::atomic<bool> has_rivals_{false};
+  std::mutex routes_mutex_;
+  std::map<dds::Guid, std::uint32_t> routes_;
 
   // file thread
   std::map<Ledger::Key, mcap::ChannelId> channels_;

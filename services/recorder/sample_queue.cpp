@@ -10,7 +10,8 @@ bool SampleQueue::push(std::uint32_t topic, const dds::RawSample& sample) {
   bool wake = false;
   {
     const std::lock_guard lock(mutex_);
-    if (is_closed_ || pending_.payloads.size() + sample.payload.size() > max_bytes_) return false;
+    if (is_closed_) return true;  // too late to matter
+    if (pending_.payloads.size() + sample.payload.size() > max_bytes_) return false;
     last_log_time_ns_ = std::max(last_log_time_ns_, std::int64_t{std::chrono::nanoseconds(now).count()});
     pending_.entries.push_back({.topic = topic,
                                 .sequence = sample.sequence,

@@ -37,8 +37,8 @@ class SampleQueue {
   /// writer before its time.
   SampleQueue(std::size_t max_bytes, std::size_t wake_entries) : max_bytes_(max_bytes), wake_entries_(wake_entries) {}
 
-  /// Returns false when the queue is full and the sample is dropped. The log time is stamped here, at one place, and
-  /// never decreases.
+  /// Returns false when the queue is full and the sample is dropped; once closed, it takes no notice of samples. The
+  /// log time is stamped here, at one place, and never decreases.
   bool push(std::uint32_t topic, const dds::RawSample& sample);
 
   /// Waits for samples, at most `timeout`, and moves them to `batch` (emptied first). Returns false when the queue is

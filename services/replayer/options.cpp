@@ -1,10 +1,10 @@
 #include "options.hpp"
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 
 #include "base/error.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/paths.hpp"
 
 namespace baton {
@@ -39,7 +39,6 @@ std::map<std::string, std::string> parseRemap(const std::vector<std::string>& pa
 
 bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& options) {
   std::string rate = "1";
-  std::string transport = "udp";
   std::vector<std::string> remap;
   CLI::App app{
       "Publishes a recording again: the recorded bytes, on the recorded topics, with their source timestamps and in\n"
@@ -49,13 +48,10 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
       "Exit codes: 0 all was replayed, 1 the recording is cut or damaged and the rest was replayed,\n"
       "2 wrong input or not a recording, 3 the file or DDS is not available, 130 interrupted.");
   app.add_option("file", options.file, "recording (MCAP)")->required();
-  app.add_option("--domain", options.domain, "DDS domain")
-      ->check(CLI::Range(0, 232))
-      ->envname("BATON_DOMAIN")
-      ->capture_default_str();
-  app.add_option("--cell", options.cell, "cell to speak in")->capture_default_str();
+  addDomain(app, options.domain)->envname("BATON_DOMAIN");
+  addCell(app, options.cell);
   app.add_option("--run", options.run, "run to speak in (default: a new one)");
-  app.add_option("--transport", transport, "udp or shm")->check(CLI::IsMember({"udp", "shm"}))->capture_default_str();
+  addTransport(app, options.transport);
   app.add_option("--topics", options.topics, "only these topics: a,b,c")->delimiter(',')->allow_extra_args(false);
   app.add_option(
          "--rate", rate,
@@ -68,17 +64,9 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
       ->capture_default_str();
   app.add_option("--remap", remap, "publish topics under other names: old=new ...");
   app.add_flag("--json", options.json, "the summary as a JSON object");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp& help) {
-    app.exit(help);
-    return false;
-  } catch (const CLI::ParseError& error) {
-    throw UsageError(std::string(error.what()) + " (see --help)");
-  }
+  if (!parseCommandLine(app, argc, argv)) return false;
   options.rate = parseRate(rate);
   options.remap = parseRemap(remap);
-  options.transport = transport == "shm" ? dds::Transport::kSharedMemory : dds::Transport::kUdp;
   if (options.from_s && options.to_s && *options.to_s < *options.from_s) {
     throw UsageError("--to: expected a time that is not before --from");
   }

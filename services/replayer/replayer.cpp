@@ -26,6 +26,8 @@ constexpr std::int64_t kQuietStart = 2 * kSecond;  // a replay shorter than this
 constexpr std::uint64_t kDatagramBytes = 1280;
 /// The receive buffer that Baton's processes ask for, and get where the kernel's limit is not lower.
 constexpr std::uint64_t kSocketBuffer = 4 << 20;
+constexpr std::int64_t kTellAfter = 5 * kSecond;   // of waiting for a reader to acknowledge
+constexpr std::int64_t kDeafAfter = 30 * kSecond;  // longer than discovery takes to notice a death
 /// A replay that is later than this catches up as fast as it can.
 constexpr std::int64_t kBehind = kSecond / 10;
 
@@ -95,7 +97,8 @@ Replayer::Replayer(const ReplayOptions& options)
   if (options_.to_s) filter_.end_time_ns = logTimeAt(*options_.to_s);
   chooseChannels();
   result_.total = countMessages();
-  if (options_.rate > 0.0) lateness_us_.reserve(result_.total);
+  // The count is the file's word: it saves growing, and is not trusted with the memory.
+  if (options_.rate > 0.0) lateness_us_.reserve(std::min<std::uint64_t>(result_.total, 1 << 22));
 }
 
 void Replayer::noteProblem(const std::string& problem) {
@@ -232,10 +235,24 @@ bool Replayer::sleepUntil(std::int64_t deadline_ns) {
   return false;
 }
 
-/// A reader that was killed is waited for until discovery gives it up.
+/// A reader that was killed is waited for until discovery gives it up; one that lives and does not acknowledge, not for
+/// ever.
 void Replayer::waitForAcknowledgments() {
   for (auto& [id, writer] : writers_) {
-    while (!is_stop_asked && !writer.waitForAcknowledgments(100)) reportWhenDue();
+    const std::string& topic = reader_.channels().at(id).topic;
+    const std::int64_t since_ns = steadyNow();
+    bool has_told = false;
+    while (!is_stop_asked && !deaf_.contains(id) && !writer.waitForAcknowledgments(100)) {
+      reportWhenDue();
+      const std::int64_t waited_ns = steadyNow() - since_ns;
+      if (waited_ns > kDeafAfter) {
+        noteProblem("a reader of " + topic + " does not acknowledge: it is no longer waited for");
+        deaf_.insert(id);
+      } else if (waited_ns > kTellAfter && !has_told) {
+        has_told = true;
+        spdlog::info("waiting for a reader of {} to acknowledge", topic);
+      }
+    }
   }
 }
 
@@ -249,8 +266,10 @@ void Replayer::report(msg::ReplayState state) {
   const Lateness lateness = latenessOf(std::span(lateness_us_).subspan(reported_));
   reported_ = lateness_us_.size();
   const mcap::Statistics& statistics = reader_.statistics();
-  const std::uint64_t position_ns = result_.messages > 0 ? log_time_ns_ - statistics.start_time_ns : 0;
-  const std::uint64_t duration_ns = statistics.end_time_ns - statistics.start_time_ns;
+  const std::uint64_t position_ns =
+      log_time_ns_ > statistics.start_time_ns ? log_time_ns_ - statistics.start_time_ns : 0;
+  const std::uint64_t duration_ns =
+      std::max(statistics.end_time_ns, statistics.start_time_ns) - statistics.start_time_ns;
   msg::ReplayStatus status;
   status.state(state);
   status.messages(result_.messages);

@@ -60,6 +60,7 @@ class Replayer {
   void report(msg::ReplayState state);
 
   ReplayOptions options_;
+  std::set<mcap::ChannelId> deaf_;   // a reader of it does not acknowledge
   std::set<std::uint64_t> damaged_;  // offsets of damage told of
   ReplayResult result_;
   mcap::Reader reader_;

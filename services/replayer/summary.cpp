@@ -2,7 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <nlohmann/json.hpp>
+#include "runtime/json.hpp"
 
 namespace baton {
 namespace {
@@ -49,7 +49,7 @@ std::string jsonText(const ReplayResult& result, const ReplayOptions& options) {
     json["lateness_us"] = {
         {"p50", result.lateness.p50_us}, {"p99", result.lateness.p99_us}, {"max", result.lateness.max_us}};
   }
-  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return toText(json);
 }
 
 }  // namespace baton

@@ -8,9 +8,7 @@
 #include <boost/process/v2/process.hpp>
 #include <csignal>
 #include <cstring>
-#include <deque>
 #include <fstream>
-#include <sstream>
 
 #include "base/error.hpp"
 
@@ -61,8 +59,8 @@ Child::Child(boost::asio::io_context& executor, Command command, std::function<v
   pid_ = process_->handle.id();
   is_running_ = true;
   process_->handle.async_wait([this, on_end = std::move(on_end)](const boost::system::error_code& wait_error, int) {
-    if (wait_error) return;
     is_running_ = false;
+    if (wait_error) return on_end(*this, {false, 127});  // it cannot be watched any more
     const int status = process_->handle.native_exit_code();
     on_end(*this, WIFSIGNALED(status) ? End{true, WTERMSIG(status)} : End{false, WEXITSTATUS(status)});
   });
@@ -87,29 +85,6 @@ long Child::residentKilobytes() const {
     if (line.starts_with("VmRSS:")) return std::stol(line.substr(6));
   }
   return 0;
-}
-
-std::string tailOf(const std::filesystem::path& file, std::size_t lines) {
-  std::ifstream stream(file);
-  std::deque<std::string> last;
-  for (std::string line; std::getline(stream, line);) {
-    last.push_back(line);
-    if (last.size() > lines) last.pop_front();
-  }
-  std::ostringstream text;
-  for (const std::string& line : last) text << "  " << line << '\n';
-  return text.str();
-}
-
-std::string lastErrorOf(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::string last;
-  std::string error;
-  for (std::string line; std::getline(stream, line);) {
-    if (line.find(" error ") != std::string::npos || line.starts_with("baton-")) error = line;
-    last = line;
-  }
-  return error.empty() ? last : error;
 }
 
 }  // namespace baton

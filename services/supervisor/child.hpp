@@ -48,9 +48,4 @@ class Child {
   bool is_running_ = false;
 };
 
-/// The last lines of a log, for a message about why something ended.
-[[nodiscard]] std::string tailOf(const std::filesystem::path& file, std::size_t lines);
-/// The last line of a log that tells of an error, its last line when none does.
-[[nodiscard]] std::string lastErrorOf(const std::filesystem::path& file);
-
 }  // namespace baton

@@ -2,7 +2,8 @@
 
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
+
+#include "runtime/json.hpp"
 
 namespace baton {
 namespace {
@@ -65,7 +66,7 @@ void writeResult(const RunInfo& info, const Scenario& scenario, const RunResult&
   const std::filesystem::path file = std::filesystem::path(info.folder) / "result.json";
   const std::filesystem::path draft = file.string() + ".new";
   std::ofstream stream(draft);
-  stream << json.dump(1) << '\n';
+  stream << toText(json) << '\n';
   stream.close();
   std::error_code error;
   if (stream) std::filesystem::rename(draft, file, error);

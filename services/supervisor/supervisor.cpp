@@ -5,12 +5,20 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "result.hpp"
+#include "runtime/log.hpp"
 #include "runtime/paths.hpp"
 
 namespace baton {
 namespace {
+
+// How long the others may take. What is still being written is waited for longest: a disk may be slow.
+constexpr std::chrono::seconds kStartLimit{60};     // for the processes to find each other
+constexpr std::chrono::seconds kPlantPatience{10};  // to say that the run has ended
+constexpr std::chrono::seconds kFilePatience{60};   // for the recorder to close its file
+constexpr std::chrono::seconds kStopPatience{3};    // for a process to end
 
 /// Exit codes of a service that say it never got going, as opposed to a death in the middle.
 bool isRefusal(const Child::End& end) {
@@ -23,14 +31,16 @@ bool isRefusal(const Child::End& end) {
 Supervisor::Supervisor(Service& service, Deployment deployment)
     : service_(service),
       deployment_(std::move(deployment)),
+      start_limit_(service.executor()),
       patience_(service.executor()),
       sim_out_(service.output(dds::topics::kSimStatus)),
       request_out_(service.output(dds::topics::kSimRequest)) {
   service.answersNoSteps();
   service.onSignal([this] { onSignal(); });
   service.onEnd([this] { runIsOver(); });
-  service.input(dds::topics::kSimStatus, {},
-                [this](const msg::SimStatus& status, const dds::RawSample&) { onSimStatus(status); });
+  service.input(dds::topics::kSimStatus, {}, [this](const msg::SimStatus& status, const dds::RawSample& sample) {
+    if (!service_.participant().isSecondCopy(sample.writer)) onSimStatus(status);
+  });
   service.input(dds::topics::kRecorderStatus, {},
                 [this](const msg::RecorderStatus& status, const dds::RawSample&) { recorder_ = status; });
   service.input(dds::topics::kSwapOutcome, {},
@@ -40,8 +50,8 @@ Supervisor::Supervisor(Service& service, Deployment deployment)
 ExitCode Supervisor::run() {
   startAll();
   service_.run();  // what the handlers wrote is ours alone from here on
-  const bool was_refused = std::any_of(swaps_.begin(), swaps_.end(), [](const msg::SwapOutcome& swap) {
-    return swap.request_id() == 0 && !swap.done();
+  const bool was_refused = std::any_of(swaps_.begin(), swaps_.end(), [&](const msg::SwapOutcome& swap) {
+    return swap.request_id() == 0 && !swap.done() && swap.at_step() <= sim_.step();  // else the run ended before
   });
   if (was_refused && exit_code_ == ExitCode::kOk) {
     exit_code_ = ExitCode::kFailed;
@@ -69,6 +79,19 @@ void Supervisor::startAll() {
   start(kTrajectoryName, kTrajectoryName, "");
   for (const ControllerConfig& controller : scenario.controllers) start("controller", controller.name, controller.law);
   start(kPlantName, kPlantName, "");
+  limitStart();
+}
+
+/// Nobody else notices when a process hangs before the first step: the plant has no step that could be late.
+void Supervisor::limitStart() {
+  start_limit_.expires_after(kStartLimit);
+  start_limit_.async_wait([this](const boost::system::error_code& error) {
+    if (error || startup_s_ >= 0.0 || stage_ != Stage::kRunning) return;
+    fail(ExitCode::kUnavailable, "the run did not start within " + std::to_string(kStartLimit.count()) +
+                                     " s: it waits for " + lastSimStatus().waiting_for().c_str());
+    spdlog::error("{}", reason_);
+    runIsOver();
+  });
 }
 
 void Supervisor::start(const std::string& role, const std::string& name, const std::string& law) {
@@ -112,10 +135,7 @@ void Supervisor::childEnded(Child& child, const Child::End& end) {
   if (stage_ == Stage::kRunning) {
     childFailed(child, end);
   } else if (stage_ == Stage::kClosingRecording && child.name() == kRecorderName) {
-    if (end.by_signal || end.value != 0) {
-      if (exit_code_ == ExitCode::kOk) exit_code_ = ExitCode::kFailed;
-      if (reason_.empty()) reason_ = "the recording is not complete";
-    }
+    if (end.by_signal || end.value != 0) fail(ExitCode::kFailed, "the recording is not complete");
     stopChildren();
   }
   if (!anyRunning()) service_.stop();
@@ -139,16 +159,14 @@ void Supervisor::childFailed(Child& child, const Child::End& end) {
   }
   if (roles_[name] == "controller" && has_started) {
     // The plant goes on without it: the baton is somebody else's by now.
-    spdlog::error("{}\n{}", why, tailOf(child.command().log_file, 5));
-    exit_code_ = ExitCode::kFailed;
-    reason_ = why;
-    if (restarts_left_[name]-- > 0) start("controller", name, service_.scenario().controller(name).law);
+    spdlog::error("{}\n{}", why, lastLines(child.command().log_file, 5));
+    fail(ExitCode::kFailed, why);
+    if (restarts_left_[name]-- > 0) restart(name);
     return;
   }
-  exit_code_ = isRefusal(end) ? static_cast<ExitCode>(end.value) : ExitCode::kFailed;
-  reason_ =
-      has_started ? why : name + " could not start (" + end.text() + "): " + lastErrorOf(child.command().log_file);
-  spdlog::error("{}\n{}", reason_, tailOf(child.command().log_file, 5));
+  fail(isRefusal(end) ? static_cast<ExitCode>(end.value) : ExitCode::kFailed,
+       has_started ? why : name + " could not start (" + end.text() + "): " + lastError(child.command().log_file));
+  spdlog::error("{}\n{}", reason_, lastLines(child.command().log_file, 5));
   if (name == kPlantName) {
     // Nobody else would end the run for the others. Written without the lock: our own reader is called from within.
     msg::SimStatus last = lastSimStatus();
@@ -161,14 +179,27 @@ void Supervisor::childFailed(Child& child, const Child::End& end) {
   } else if (!has_started || name == kRecorderName) {
     runIsOver();
   } else {
-    enter(Stage::kRunning, std::chrono::seconds(5));  // for the plant to say that the run has ended
+    enter(Stage::kRunning, kPlantPatience);
+  }
+}
+
+/// The first failure names the run's end; what follows from it does not replace it.
+void Supervisor::fail(ExitCode code, const std::string& reason) {
+  if (exit_code_ == ExitCode::kOk) exit_code_ = code;
+  if (reason_.empty()) reason_ = reason;
+}
+
+void Supervisor::restart(const std::string& name) {
+  try {
+    start("controller", name, service_.scenario().controller(name).law);
+  } catch (const Error& error) {
+    spdlog::error("{} is not started again: {}", name, error.what());
   }
 }
 
 void Supervisor::onSignal() {
   if (stage_ != Stage::kRunning) return;  // ending already
-  if (exit_code_ == ExitCode::kOk) exit_code_ = ExitCode::kInterrupted;
-  if (reason_.empty()) reason_ = "stopped from outside";
+  fail(ExitCode::kInterrupted, "stopped from outside");
   spdlog::info("stopping the run");
   if (!isRunning(kPlantName) || startup_s_ < 0.0) return runIsOver();
   msg::SimRequest request;
@@ -178,7 +209,7 @@ void Supervisor::onSignal() {
     const std::lock_guard lock(service_.mutex());
     request_out_.write(request);
   }
-  enter(Stage::kRunning, std::chrono::seconds(3));
+  enter(Stage::kRunning, kPlantPatience);
 }
 
 // --- the end
@@ -198,10 +229,13 @@ void Supervisor::giveUpWaiting() {
     case Stage::kClosingRecording: spdlog::warn("the recorder does not close its file"); return stopChildren();
     case Stage::kStopping:
       for (const auto& child : children_) {
-        if (child->isRunning()) spdlog::warn("killing service={} pid={}", child->name(), child->pid());
+        if (!child->isRunning() || (child->name() == kRecorderName && !has_spared_recorder_)) continue;
+        spdlog::warn("killing service={} pid={}", child->name(), child->pid());
         child->signal(SIGCONT);
         child->signal(SIGKILL);
       }
+      if (isRunning(kRecorderName) && !std::exchange(has_spared_recorder_, true))
+        enter(Stage::kStopping, kFilePatience);
       return;
   }
 }
@@ -209,22 +243,21 @@ void Supervisor::giveUpWaiting() {
 void Supervisor::runIsOver() {
   if (stage_ != Stage::kRunning) return;
   if (const msg::SimStatus last = lastSimStatus(); last.state() == msg::SIM_STATE_ABORTED) {
-    if (exit_code_ == ExitCode::kOk) exit_code_ = ExitCode::kAborted;
-    if (reason_.empty()) reason_ = last.reason().c_str();
+    fail(ExitCode::kAborted, last.reason().c_str());
   }
   for (const auto& child : children_) {
     if (child->isRunning()) resident_kB_[child->name()] = child->residentKilobytes();
   }
   // A run that never started has nobody who would end it: the recorder is told like everybody else.
   if (isRunning(kRecorderName) && startup_s_ >= 0.0) {
-    enter(Stage::kClosingRecording, std::chrono::seconds(15));
+    enter(Stage::kClosingRecording, kFilePatience);
   } else {
     stopChildren();
   }
 }
 
 void Supervisor::stopChildren() {
-  enter(Stage::kStopping, std::chrono::seconds(3));
+  enter(Stage::kStopping, kStopPatience);
   for (const auto& child : children_) child->signal(SIGTERM);
   if (!anyRunning()) service_.stop();
 }

@@ -33,9 +33,12 @@ class Supervisor {
   enum class Stage { kRunning, kClosingRecording, kStopping };
 
   void startAll();
+  void limitStart();
   void start(const std::string& role, const std::string& name, const std::string& law);
   void childEnded(Child& child, const Child::End& end);
   void childFailed(Child& child, const Child::End& end);
+  void fail(ExitCode code, const std::string& reason);
+  void restart(const std::string& name);
   void onSimStatus(const msg::SimStatus& status);
   [[nodiscard]] msg::SimStatus lastSimStatus();
   void onSignal();
@@ -51,7 +54,9 @@ class Supervisor {
   std::map<std::string, std::string> roles_;  // of services, by name
   std::map<std::string, int> restarts_left_;
   std::vector<std::unique_ptr<Child>> children_;
+  boost::asio::steady_timer start_limit_;
   boost::asio::steady_timer patience_;
+  bool has_spared_recorder_ = false;
   Stage stage_ = Stage::kRunning;
   ExitCode exit_code_ = ExitCode::kOk;
   std::string reason_;

@@ -12,7 +12,7 @@ ReferenceSource::ReferenceSource(Service& service)
 }
 
 void ReferenceSource::onState(const msg::PlantState& message) {
-  if (service_.isOver()) return;
+  if (!service_.isReady() || service_.isOver()) return;
   if (!started_) publish(message.step());
   started_ = true;
   publish(message.step() + 1);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "dds/typed.hpp"
 #include "mcap/reader.hpp"
 #include "support/processes.hpp"
 #include "support/recordings.hpp"
@@ -135,17 +136,45 @@ TEST(Fault, AHolderThatDiesLosesTheBatonToTheFallback) {
   for (const double change : swap.at("applied_effort_step")) EXPECT_LT(std::abs(change), 0.5);
 }
 
-TEST(Fault, ASecondPlantInTheRunGivesWay) {
+/// A second copy of one of the run's services, started by hand.
+class SecondCopy : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(SecondCopy, GivesWayAndChangesNothing) {
   Bench bench;
   const LiveRun run(bench, endless());
-  const int second = bench.start("baton-plant",
-                                 {"--scenario", (bench.folder() / "live.yaml").string(), "--run",
-                                  run.status.at("run").get<std::string>(), "--domain", std::to_string(bench.domain())},
-                                 "second.log");
+  const bool is_controller = GetParam() == "tracking";
+  std::vector<std::string> arguments{"--scenario", (bench.folder() / "live.yaml").string(),
+                                     "--run",      run.status.at("run").get<std::string>(),
+                                     "--domain",   std::to_string(bench.domain())};
+  if (is_controller) arguments.insert(arguments.end(), {"--name", GetParam()});
+  const int second = bench.start("baton-" + (is_controller ? "controller" : GetParam()), arguments, "second.log");
   EXPECT_EQ(bench.wait(second), 3);
   const std::uint64_t step = bench.batonJson({"status", "--json"}).at("step");
   run.waitForStep(step + 100);
-  EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
+  const nlohmann::json result = bench.batonJson({"down", "--json"});
+  EXPECT_TRUE(result.at("recording").at("complete")) << result;
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SecondCopy, ::testing::Values("plant", "environment", "trajectory", "tracking"),
+                         [](const auto& service) { return service.param; });
+
+TEST(Fault, APlantWhoseServicesAnswerAnotherGivesWay) {
+  // As when discovery tells of everybody but the run's own plant.
+  Bench bench;
+  const std::string run = "20000101-000000-0000";
+  const std::string scenario = bench.write("short.yaml", shortContact());
+  const int plant = bench.start(
+      "baton-plant", {"--scenario", scenario, "--run", run, "--domain", std::to_string(bench.domain())}, "plant.log");
+  dds::Participant participant(
+      {.domain = bench.domain(), .partition = "lab/" + run, .cell = "lab", .run = run, .service = "environment"});
+  dds::Writer<msg::ServiceStatus> writer(participant, dds::topics::kServiceStatus);
+  msg::ServiceStatus status;
+  status.name("environment");
+  status.role("environment");
+  status.state(msg::SERVICE_READY);
+  status.plant({1, 2, 3});
+  EXPECT_TRUE(writer.write(status));
+  EXPECT_EQ(bench.wait(plant), 3);
 }
 
 TEST(Fault, ALeftOverPlantKeepsItsCell) {

@@ -32,7 +32,7 @@ pid_t launch(const fs::path& program, const std::vector<std::string>& arguments,
   argv.push_back(nullptr);
   const pid_t pid = fork();
   if (pid == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that is killed leaves nothing behind
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // it does not outlive a test that is killed
     setenv("BATON_HOME", home.c_str(), 1);
     const int out_file = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
     const int err_file = out == err ? out_file : open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
@@ -46,9 +46,16 @@ pid_t launch(const fs::path& program, const std::vector<std::string>& arguments,
   return pid;
 }
 
-int waitFor(pid_t pid) {
+/// Returns the exit code. A program that hangs fails its test, with its last words, rather than CTest's patience.
+int waitFor(pid_t pid, const std::vector<fs::path>& outputs) {
   int how = 0;
-  waitpid(pid, &how, 0);
+  if (!eventually([&] { return waitpid(pid, &how, WNOHANG) == pid; })) {
+    kill(pid, SIGKILL);
+    waitpid(pid, &how, 0);
+    std::string words;
+    for (const fs::path& output : outputs) words += "\n" + output.string() + ":\n" + contentsOf(output);
+    throw std::runtime_error("process " + std::to_string(pid) + " does not end" + words);
+  }
   return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
 }
 
@@ -62,7 +69,7 @@ Finished runProgram(const fs::path& program, const std::vector<std::string>& arg
   const std::string stem = "call" + std::to_string(++count);
   const fs::path out = home / (stem + ".out");
   const fs::path err = home / (stem + ".err");
-  const int exit_code = waitFor(launch(program, arguments, home, out, err));
+  const int exit_code = waitFor(launch(program, arguments, home, out, err), {out, err});
   return {exit_code, contentsOf(out), contentsOf(err)};
 }
 
@@ -73,7 +80,7 @@ Bench::Bench() : domain_(1 + getpid() % 99) {
 }
 
 Bench::~Bench() {
-  for (const int pid : started_) {
+  for (const auto& [pid, log] : started_) {
     kill(pid, SIGKILL);
     waitpid(pid, nullptr, 0);
   }
@@ -103,13 +110,15 @@ nlohmann::json Bench::batonJson(std::vector<std::string> arguments) const {
 
 int Bench::start(const std::string& program, const std::vector<std::string>& arguments, const std::string& log) {
   const fs::path file = folder_ / log;
-  started_.push_back(launch(programFolder() / program, arguments, folder_, file, file));
-  return started_.back();
+  const int pid = launch(programFolder() / program, arguments, folder_, file, file);
+  started_[pid] = file;
+  return pid;
 }
 
 int Bench::wait(int pid) {
-  std::erase(started_, pid);
-  return waitFor(pid);
+  const fs::path log = started_.at(pid);
+  started_.erase(pid);
+  return waitFor(pid, {log});
 }
 
 std::string Bench::write(const std::string& name, const std::string& text) const {
@@ -119,7 +128,7 @@ std::string Bench::write(const std::string& name, const std::string& text) const
 }
 
 bool eventually(const std::function<bool()>& condition) {
-  const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(2);
   while (!condition()) {
     if (std::chrono::steady_clock::now() > give_up) return false;
     usleep(10'000);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -33,7 +34,7 @@ class Bench {
   /// Starts a program and returns its process id; its output goes to `log` in the folder. Ended with the bench.
   [[nodiscard]] int start(const std::string& program, const std::vector<std::string>& arguments,
                           const std::string& log);
-  /// Waits for a started program. Returns its exit code, 128 + signal when one ended it.
+  /// Waits for a started program. Returns its exit code, 128 + signal when one ended it. Throws when it does not end.
   [[nodiscard]] int wait(int pid);
   /// Writes a file into the folder and returns its path.
   [[nodiscard]] std::string write(const std::string& name, const std::string& text) const;
@@ -41,7 +42,7 @@ class Bench {
  private:
   std::filesystem::path folder_;
   int domain_;
-  std::vector<int> started_;
+  std::map<int, std::filesystem::path> started_;  // process id and log
 };
 
 /// Where the programs and the repository's files are.
@@ -52,8 +53,8 @@ class Bench {
 [[nodiscard]] Finished runProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                                   const std::filesystem::path& home);
 
-/// Waits until `condition` holds, by looking at it again and again; false when it does not within a minute, which fails
-/// a test that is broken and decides nothing about one that is not.
+/// Waits until `condition` holds, by looking at it again and again; false when it does not within two minutes, which
+/// fails a test that is broken and decides nothing about one that is not.
 [[nodiscard]] bool eventually(const std::function<bool()>& condition);
 
 /// Processes whose command line contains `text`.

@@ -1,0 +1,48 @@
+#include "runtime/command_line.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "base/error.hpp"
+
+namespace baton {
+
+bool parseCommandLine(CLI::App& app, int argc, const char* const* argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp& help) {
+    app.exit(help);
+    return false;
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(std::string(error.what()) + " (see --help)");
+  }
+  return true;
+}
+
+CLI::Option* addCell(CLI::App& app, std::string& cell) {
+  const auto complaint = [](const std::string& name) -> std::string {
+    const bool is_good = !name.empty() && name.size() < 32 && std::all_of(name.begin(), name.end(), [](char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+    });
+    return is_good ? "" : "expected 1 to 31 of A-Z a-z 0-9 _ -, found " + name;
+  };
+  return app.add_option("--cell", cell, "cell: one robot with its parts")
+      ->check(CLI::Validator(complaint, "NAME"))
+      ->capture_default_str();
+}
+
+CLI::Option* addDomain(CLI::App& app, int& domain) {
+  return app.add_option("--domain", domain, "DDS domain")->check(CLI::Range(0, 232))->capture_default_str();
+}
+
+CLI::Option* addTransport(CLI::App& app, dds::Transport& transport) {
+  return app
+      .add_option_function<std::string>(
+          "--transport",
+          [&transport](const std::string& name) { transport = dds::transportCalled(name).value_or(transport); },
+          "udp, or shm: faster, but after kill -9 shared memory leaves files in /dev/shm behind")
+      ->check(CLI::IsMember({"udp", "shm"}))
+      ->default_str(dds::toString(transport));
+}
+
+}  // namespace baton

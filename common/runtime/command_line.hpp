@@ -1,0 +1,22 @@
+/// What the command lines of all programs share: the options that place a process in DDS, and how a wrong line is told.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "dds/types.hpp"
+
+namespace baton {
+
+/// Parses. Returns false after printing the help that was asked for. Throws UsageError for a line that is wrong.
+[[nodiscard]] bool parseCommandLine(CLI::App& app, int argc, const char* const* argv);
+
+/// --cell: refuses a name that is not 1 to 31 of A-Z a-z 0-9 _ -, as it becomes part of a file's name and of a DDS
+/// partition.
+CLI::Option* addCell(CLI::App& app, std::string& cell);
+/// --domain: 0 to 232.
+CLI::Option* addDomain(CLI::App& app, int& domain);
+/// --transport: udp or shm.
+CLI::Option* addTransport(CLI::App& app, dds::Transport& transport);
+
+}  // namespace baton
