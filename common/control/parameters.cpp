@@ -79,6 +79,7 @@ ParameterValues completeParameters(const std::vector<ParameterSpec>& specs, cons
     const auto is_named = [&name = name](const ParameterSpec& spec) { return spec.name == name; };
     if (std::none_of(specs.begin(), specs.end(), is_named)) {
       std::vector<std::string> known;
+      known.reserve(specs.size());
       for (const ParameterSpec& spec : specs) known.push_back(spec.name);
       throw UsageError(unknownName("parameter", name, known));
     }

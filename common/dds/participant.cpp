@@ -212,7 +212,7 @@ bool isElder(const Peer& a, const Peer& b) {
   return std::tie(a.started_ns, a.prefix) < std::tie(b.started_ns, b.prefix);
 }
 
-void Participant::watchWriters(WriterCallback callback) {
+void Participant::watchWriters(const WriterCallback& callback) {
   std::map<Guid, DiscoveredWriter> known;
   {
     const std::lock_guard lock(impl_->mutex);

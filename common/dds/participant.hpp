@@ -70,7 +70,7 @@ class Participant {
   [[nodiscard]] const Peer& self() const;
 
   /// Calls back for every writer of somebody else in the domain, those known already first.
-  void watchWriters(WriterCallback callback);
+  void watchWriters(const WriterCallback& callback);
 
   struct Impl;  // Fast DDS entities, for the other files of this folder
   [[nodiscard]] Impl& impl() const { return *impl_; }

@@ -42,7 +42,7 @@ fs::path stateFolder() {
 fs::path programFolder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
 fs::path siblingProgram(const std::string& name) {
-  const fs::path path = programFolder() / name;
+  fs::path path = programFolder() / name;
   if (access(path.c_str(), X_OK) != 0) {
     throw UnavailableError("the program " + path.string() + " is missing: build or install Baton again");
   }
@@ -50,7 +50,7 @@ fs::path siblingProgram(const std::string& name) {
 }
 
 fs::path dataFolder() {
-  const fs::path folder = programFolder().parent_path() / "share/baton";
+  fs::path folder = programFolder().parent_path() / "share/baton";
   if (fs::exists(folder / "scenarios")) return folder;
   throw UnavailableError("expected Baton's scenarios and robots in " + folder.string() +
                          ", found nothing: build or install Baton again, or give whole paths");
@@ -59,7 +59,7 @@ fs::path dataFolder() {
 fs::path findScenario(const std::string& name) {
   if (fs::is_regular_file(name)) return fs::absolute(name);
   const fs::path folder = dataFolder() / "scenarios";
-  if (const fs::path known = folder / (name + ".yaml"); fs::is_regular_file(known)) return known;
+  if (fs::path known = folder / (name + ".yaml"); fs::is_regular_file(known)) return known;
   std::string names;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".yaml") names += (names.empty() ? "" : ", ") + entry.path().stem().string();

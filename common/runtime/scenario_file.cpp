@@ -207,7 +207,7 @@ ControllerConfig readController(const YamlNode& node, const Scenario& scenario) 
 
 /// The name of a controller of this scenario.
 std::string readMember(const YamlNode& node, const Scenario& scenario) {
-  const std::string name = node.text();
+  std::string name = node.text();
   at(node, [&] { (void)scenario.controller(name); });
   return name;
 }

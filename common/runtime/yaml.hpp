@@ -53,6 +53,7 @@ class YamlNode {
   template <typename T>
   [[nodiscard]] T oneOf(const std::vector<std::pair<std::string, T>>& choices) const {
     std::vector<std::string> words;
+    words.reserve(choices.size());
     for (const auto& choice : choices) words.push_back(choice.first);
     return choices[indexOfWord(words)].second;
   }

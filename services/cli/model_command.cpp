@@ -43,7 +43,7 @@ struct ModelReport {
 fs::path findRobot(const std::string& name) {
   if (fs::is_regular_file(name)) return name;
   const fs::path folder = dataFolder() / "robots";
-  if (const fs::path known = folder / (name + ".yaml"); fs::is_regular_file(known)) return known;
+  if (fs::path known = folder / (name + ".yaml"); fs::is_regular_file(known)) return known;
   std::string names;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".yaml") names += (names.empty() ? "" : ", ") + entry.path().stem().string();

@@ -18,7 +18,8 @@ void addReplayCommand(CLI::App& app, ExitCode& /*exit_code*/) {
   command->callback([command] {
     const std::string program = siblingProgram("baton-replayer");
     std::vector<std::string> arguments{"baton replay"};  // what its help calls it
-    for (const std::string& argument : command->remaining()) arguments.push_back(argument);
+    const std::vector<std::string> rest = command->remaining();
+    arguments.insert(arguments.end(), rest.begin(), rest.end());
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);

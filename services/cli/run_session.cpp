@@ -85,7 +85,7 @@ pid_t launch(const fs::path& program, const std::vector<std::string>& arguments,
 }
 
 fs::path checkedOut(const RunRequest& request) {
-  const fs::path out = fs::absolute(request.out);
+  fs::path out = fs::absolute(request.out);
   if (!fs::is_directory(out.parent_path())) {
     throw UsageError("--out " + request.out + ": expected a file in an existing folder, and " +
                      out.parent_path().string() + " is none");

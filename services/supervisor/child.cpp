@@ -22,6 +22,7 @@ struct ChildSetup {
   pid_t parent;
 
   template <class Launcher>
+  // NOLINTNEXTLINE(readability-identifier-naming): the name Boost looks for
   boost::system::error_code on_exec_setup(Launcher&, const process::filesystem::path&, const char* const*) {
     setpgid(0, 0);
     sigset_t none;
@@ -70,7 +71,7 @@ Child::~Child() {
   if (is_running_) kill(pid_, SIGKILL);
 }
 
-void Child::signal(int number) {
+void Child::signal(int number) const {
   if (is_running_) kill(pid_, number);
 }
 

@@ -32,7 +32,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  void signal(int number);
+  void signal(int number) const;
   [[nodiscard]] bool isRunning() const { return is_running_; }
   [[nodiscard]] int pid() const { return pid_; }
   [[nodiscard]] const Command& command() const { return command_; }

@@ -64,7 +64,7 @@ ExitCode Supervisor::run() {
                .sim = lastSimStatus(),
                .recorder = recorder_,
                .swaps = swaps_,
-               .resident_kB = resident_kB_});
+               .resident_kB = resident_});
   return exit_code_;
 }
 
@@ -246,7 +246,7 @@ void Supervisor::runIsOver() {
     fail(ExitCode::kAborted, last.reason().c_str());
   }
   for (const auto& child : children_) {
-    if (child->isRunning()) resident_kB_[child->name()] = child->residentKilobytes();
+    if (child->isRunning()) resident_[child->name()] = child->residentKilobytes();
   }
   // A run that never started has nobody who would end it: the recorder is told like everybody else.
   if (isRunning(kRecorderName) && startup_s_ >= 0.0) {

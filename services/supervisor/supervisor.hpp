@@ -67,7 +67,7 @@ class Supervisor {
   msg::SimStatus sim_;
   msg::RecorderStatus recorder_;
   std::vector<msg::SwapOutcome> swaps_;
-  std::map<std::string, long> resident_kB_;
+  std::map<std::string, long> resident_;  // [kB], by service
 
   // On behalf of a child that died; a writer each, so that no death replaces another's word.
   std::map<std::string, dds::Writer<msg::ServiceStatus>*> status_out_;
