@@ -28,8 +28,8 @@ std::string endless(const std::string& extra = "") {
 }
 
 struct LiveRun {
-  LiveRun(const Bench& bench, const std::string& scenario, const std::vector<std::string>& options = {})
-      : bench_(bench) {
+  LiveRun(const Bench& bench_in, const std::string& scenario, const std::vector<std::string>& options = {})
+      : bench(bench_in) {
     recording = (bench.folder() / "live.mcap").string();
     std::vector<std::string> arguments{"up", bench.write("live.yaml", scenario), "--out", recording};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -44,17 +44,17 @@ struct LiveRun {
     return -1;
   }
   void waitForStep(std::uint64_t step) const {
-    EXPECT_TRUE(eventually([&] { return bench_.batonJson({"status", "--json"}).at("step") >= step; }));
+    EXPECT_TRUE(eventually([&] { return bench.batonJson({"status", "--json"}).at("step") >= step; }));
   }
-  [[nodiscard]] fs::path folder() const { return bench_.folder() / "runs" / status.at("run").get<std::string>(); }
+  [[nodiscard]] fs::path folder() const { return bench.folder() / "runs" / status.at("run").get<std::string>(); }
   /// Waits for the run to be over and returns its result.
   [[nodiscard]] nlohmann::json result() const {
     EXPECT_TRUE(eventually([&] { return fs::exists(folder() / "result.json"); }));
-    EXPECT_TRUE(eventually([&] { return processesWith(bench_.folder().string()).empty(); }));
+    EXPECT_TRUE(eventually([&] { return processesWith(bench.folder().string()).empty(); }));
     return nlohmann::json::parse(std::ifstream(folder() / "result.json"));
   }
 
-  const Bench& bench_;
+  const Bench& bench;
   std::string recording;
   nlohmann::json status;
 };

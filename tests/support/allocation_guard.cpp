@@ -19,7 +19,8 @@ constinit thread_local std::size_t allocations = 0;
 
 #if BATON_COUNTS_ALLOCATIONS
 // The executable's own malloc family takes precedence over glibc's, for every library of the process. Each one counts
-// and passes on; free needs no stand-in.
+// and passes on; free needs no stand-in. The names are the C library's.
+// NOLINTBEGIN(readability-identifier-naming)
 extern "C" {
 void* __libc_malloc(std::size_t size) noexcept;
 void* __libc_calloc(std::size_t count, std::size_t size) noexcept;
@@ -57,6 +58,7 @@ int posix_memalign(void** block, std::size_t alignment, std::size_t size) noexce
   return 0;
 }
 }  // extern "C"
+// NOLINTEND(readability-identifier-naming)
 #endif
 
 namespace baton::test {
