@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "control/law.hpp"
 #include "control/nearest_name.hpp"
+#include "runtime/paths.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/yaml.hpp"
 
@@ -336,7 +337,11 @@ const ControllerConfig& Scenario::controller(const std::string& controller_name)
 Scenario loadScenario(const std::string& path, const std::string& robot_path) {
   namespace fs = std::filesystem;
   Scenario scenario = readScenario(path, readYamlFile(path), [&](const YamlNode& node) -> RobotFile {
-    const fs::path named = (fs::path(path).parent_path() / node.text()).lexically_normal();
+    // "rpp" is one that comes with Baton, anything else a file beside the scenario.
+    const std::string word = node.text();
+    const bool is_bare = word.find_first_of("./") == std::string::npos;
+    const fs::path named =
+        is_bare ? dataFolder() / "robots" / (word + ".yaml") : (fs::path(path).parent_path() / word).lexically_normal();
     const fs::path robot = robot_path.empty() ? named : fs::path(robot_path);
     return at(node, [&] {
       return RobotFile{robot.string(), fs::absolute(robot).lexically_normal().string(), readYamlFile(robot.string())};

@@ -136,8 +136,15 @@ void Service::stepDone(std::uint64_t step) {
 void Service::runEnded(std::uint64_t step, bool clean) {
   if (end_step_) return;
   end_step_ = step;
-  if (clean && answers_steps_ && !(last_done_ && *last_done_ >= step)) return;  // stepDone() will come
-  asio::post(executor_, [this] { publishManifest(); });
+  const bool is_behind = clean && answers_steps_ && !(last_done_ && *last_done_ >= step);
+  asio::post(executor_, [this, is_behind] {
+    if (!is_behind) return publishManifest();
+    // stepDone() will come, unless inputs were lost to a process that had been stopped for long.
+    end_limit_.expires_after(std::chrono::seconds(3));
+    end_limit_.async_wait([this](const boost::system::error_code& error) {
+      if (!error) publishManifest();
+    });
+  });
 }
 
 void Service::tellLosses() {

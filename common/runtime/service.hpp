@@ -12,6 +12,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <csignal>
 #include <functional>
@@ -110,6 +111,7 @@ class Service {
   // From before the first to after the last thing that a signal could cut off.
   boost::asio::signal_set signals_{executor_, SIGINT, SIGTERM};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{executor_.get_executor()};
+  boost::asio::steady_timer end_limit_{executor_};
   std::mutex mutex_;
   dds::Participant participant_;
   Barrier barrier_{participant_};

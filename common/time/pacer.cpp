@@ -10,6 +10,10 @@ void Pacer::anchor(std::uint64_t step, std::int64_t now_ns) noexcept {
   anchor_ns_ = now_ns;
 }
 
+void Pacer::forgive(std::uint64_t step, std::int64_t now_ns, std::int64_t limit_ns) noexcept {
+  if (const std::optional<std::int64_t> due = deadline(step); due && now_ns - *due > limit_ns) anchor(step, now_ns);
+}
+
 void Pacer::setRate(double rate, std::uint64_t step, std::int64_t now_ns) noexcept {
   rate_ = rate;
   anchor(step, now_ns);

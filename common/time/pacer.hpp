@@ -15,6 +15,8 @@ class Pacer {
   /// From here on: step `step` is due now. Called at the start, after a pause and when the rate changes, so that time
   /// lost is never caught up in a rush.
   void anchor(std::uint64_t step, std::int64_t now_ns) noexcept;
+  /// After a stall the motion goes on at its rate from here; a delay shorter than `limit_ns` is caught up.
+  void forgive(std::uint64_t step, std::int64_t now_ns, std::int64_t limit_ns) noexcept;
   void setRate(double rate, std::uint64_t step, std::int64_t now_ns) noexcept;
   [[nodiscard]] double rate() const noexcept { return rate_; }
 

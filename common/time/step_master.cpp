@@ -43,7 +43,7 @@ void StepMaster::resume() noexcept {
 void StepMaster::stepBy(std::uint64_t steps) noexcept {
   if (isOver() || phase_ == SimPhase::kStarting || steps == 0) return;
   phase_ = SimPhase::kRunning;
-  steps_left_ = steps;
+  steps_left_ += steps;
 }
 
 void StepMaster::finish() noexcept {

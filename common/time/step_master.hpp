@@ -36,7 +36,7 @@ class StepMaster {
   void start() noexcept;  // the barrier is open: step 0 begins
   void pause() noexcept;
   void resume() noexcept;
-  void stepBy(std::uint64_t steps) noexcept;  // run that many steps, then pause
+  void stepBy(std::uint64_t steps) noexcept;  // run that many (more) steps, then pause
   void finish() noexcept;                     // orderly end here
   void abort() noexcept;
   /// Samples for any step but the open one are not counted; the return value says whether this one was.

@@ -2,7 +2,11 @@
 
 #include <unistd.h>
 
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <random>
+
+#include "runtime/paths.hpp"
 
 namespace baton {
 
@@ -19,6 +23,30 @@ CellClient::CellClient(const RunInfo& info)
                      changed_.notify_all();
                    }) {}
 
+namespace {
+/// How the cell's last run ended, as a sentence; empty when there was none.
+std::string lastRunOf(int domain, const std::string& cell) {
+  namespace fs = std::filesystem;
+  std::string newest;
+  std::string sentence;
+  std::error_code nothing_yet;
+  for (const auto& entry : fs::directory_iterator(stateFolder() / "runs", nothing_yet)) {
+    const std::string name = entry.path().filename().string();
+    if (name < newest) continue;  // they sort by time
+    try {
+      const nlohmann::json result = nlohmann::json::parse(readFile(entry.path() / "result.json"));
+      if (result.at("cell") != cell || result.at("domain") != domain) continue;
+      newest = name;
+      sentence = ". Its last run, " + name + ", is over: " + result.at("state").get<std::string>() + " (" +
+                 (entry.path() / "result.json").string() + ")";
+    } catch (const std::exception&) {
+      continue;  // it left no result
+    }
+  }
+  return sentence;
+}
+}  // namespace
+
 RunInfo CellClient::find(int domain, const std::string& cell) {
   if (const std::optional<RunInfo> run = activeRun(domain, cell)) return *run;
   std::string others;
@@ -26,7 +54,8 @@ RunInfo CellClient::find(int domain, const std::string& cell) {
     others += (others.empty() ? "" : ", ") + ("--cell " + run.cell + " --domain " + std::to_string(run.domain));
   }
   throw UnavailableError("nothing runs in cell " + cell + " of domain " + std::to_string(domain) +
-                         (others.empty() ? ": start a scenario with `baton up SCENARIO`" : "; there is: " + others));
+                         (others.empty() ? ": start a scenario with `baton up SCENARIO`" : "; there is: " + others) +
+                         lastRunOf(domain, cell));
 }
 
 std::uint64_t CellClient::newRequestId() {

@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "dds/typed.hpp"
 #include "runtime/cell.hpp"
+#include "runtime/service_options.hpp"
 
 namespace baton {
 
@@ -21,6 +22,8 @@ class CellClient {
  public:
   /// Long enough for a lost datagram of discovery to be sent again more than once; what answers is not waited for.
   static constexpr std::chrono::seconds kPatience{15};
+
+  static constexpr std::chrono::seconds kRecorderPatience{3};
 
   explicit CellClient(const RunInfo& info);
 
@@ -113,6 +116,12 @@ std::optional<Answer> CellClient::ask(const dds::Topic<Request>& request_topic, 
   writer.write(request);
   lock.lock();
   changed_.wait_for(lock, patience, [&] { return answer.has_value(); });
+  if (!info_.recording.empty()) {
+    // The recorder learns of this writer when it sees it, and what is asked belongs into the recording.
+    changed_.wait_for(lock, kRecorderPatience, [&] { return isMatchedWith(writer.raw().matched(), kRecorderName); });
+    lock.unlock();
+    writer.raw().waitForAcknowledgments(static_cast<int>(std::chrono::milliseconds(kRecorderPatience).count()));
+  }
   return answer;
 }
 

@@ -46,7 +46,8 @@ std::map<std::string, T> latestByName(CellClient& client, const dds::Topic<T>& t
     const auto latest = byName(all);
     return std::all_of(expected.begin(), expected.end(), [&](const auto& name) { return latest.contains(name); });
   };
-  return byName(client.collect<T>(topic, hasAll));
+  // Somebody may be stopped: what the others say is worth more than the wait.
+  return byName(client.collect<T>(topic, hasAll, std::chrono::seconds(5)));
 }
 
 msg::SimStatus simStatus(CellClient& client) {
@@ -117,7 +118,11 @@ void status(const Target& target) {
 void controllers(const Target& target) {
   CellClient client(CellClient::find(target.domain, target.cell));
   const Scenario scenario = loadScenario(keptScenario(client.info()), keptRobot(client.info()));
-  const auto all = latestByName(client, dds::topics::kControllerStatus, controllerNames(scenario));
+  std::vector<std::string> expected = controllerNames(scenario);
+  for (const auto& [name, service] : latestByName(client, dds::topics::kServiceStatus, expected)) {
+    if (service.state() == msg::SERVICE_FAILED) std::erase(expected, name);  // it will not speak any more
+  }
+  const auto all = latestByName(client, dds::topics::kControllerStatus, expected);
   Json json = Json::array();
   if (!target.json)
     std::printf("%-16s %-28s %-9s %10s  %-32s %s\n", "name", "law", "state", "step", "effort [N m or N]",
@@ -195,15 +200,34 @@ void swap(const Target& target, const std::string& name, std::uint64_t at_step, 
   }
 }
 
+/// Waits until the run stands still again, at `goal` or wherever it was stopped; as long as it moves.
+std::uint64_t stepReached(CellClient& client, std::uint64_t goal) {
+  std::uint64_t step = simStatus(client).step();
+  for (;;) {
+    const std::uint64_t before = step;
+    const auto hasStopped = [&](const std::vector<msg::SimStatus>& all) {
+      step = all.empty() ? step : all.back().step();
+      return !all.empty() && (step >= goal || all.back().state() != msg::SIM_STATE_RUNNING);
+    };
+    if (hasStopped(client.collect<msg::SimStatus>(dds::topics::kSimStatus, hasStopped))) return step;
+    if (step == before) {
+      throw UnavailableError("the run stands at step " + std::to_string(step) + " and does not reach " +
+                             std::to_string(goal) + "; see `baton status`");
+    }
+  }
+}
+
 void sim(const Target& target, const msg::SimRequest& what, ExitCode& exit_code) {
   CellClient client(CellClient::find(target.domain, target.cell));
   msg::SimRequest request = what;
   request.request_id(CellClient::newRequestId());
-  const auto reply = client.ask<msg::SimRequest, msg::SimReply>(
+  auto reply = client.ask<msg::SimRequest, msg::SimReply>(
       dds::topics::kSimRequest, request, dds::topics::kSimReply,
       [&](const msg::SimReply& one) { return one.request_id() == request.request_id(); }, kPlantName);
   if (!reply) throw UnavailableError("the plant did not answer; see `baton status`");
   exit_code = reply->accepted() ? ExitCode::kOk : ExitCode::kFailed;
+  if (reply->accepted() && what.action() == msg::SIM_STEP)
+    reply->step(stepReached(client, reply->step() + what.steps()));
   if (target.json) {
     std::cout << toText(Json{
                      {"accepted", reply->accepted()}, {"step", reply->step()}, {"reason", reply->reason().c_str()}})

@@ -42,11 +42,16 @@ void printResult(const nlohmann::ordered_json& result) {
                 static_cast<unsigned long long>(result.at("steps")), result.at("sim_time_s").get<double>(), elapsed_s,
                 result.at("real_time_ratio").get<double>(), result.at("startup_s").get<double>());
   }
+  std::printf("hash        %s: runs with the same one have the same bytes, step by step\n",
+              result.at("chain_hash").get<std::string>().c_str());
   if (const std::uint64_t missed = result.at("missed_steps"); missed > 0) {
     std::printf("missed      %llu steps had to use an old torque\n", static_cast<unsigned long long>(missed));
   }
   if (!result.at("swaps").empty()) std::printf("handovers   [N m or N, largest over the joints]\n");
-  for (const auto& swap : result.at("swaps")) printSwap(swap);
+  for (const auto& swap : result.at("swaps")) {
+    const bool has_come = swap.at("done").get<bool>() || swap.at("at_step") <= result.at("steps");
+    if (has_come) printSwap(swap);
+  }
   if (const auto& recording = result.at("recording"); !recording.is_null()) {
     std::printf("recording   %s\n            %.2f MB, %llu messages, %s\n",
                 recording.at("path").get<std::string>().c_str(), recording.at("bytes").get<double>() / 1e6,

@@ -84,7 +84,13 @@ void up(const RunRequest& request, ExitCode& exit_code) {
   std::printf("up: run %s in cell %s, domain %d\nlogs %s\n", session.info().run.c_str(), session.info().cell.c_str(),
               session.info().domain, session.info().folder.c_str());
   if (!session.info().recording.empty()) std::printf("recording %s\n", session.info().recording.c_str());
-  std::printf("try: baton status | baton controllers | baton swap NAME | baton down\n");
+  const std::string where = (session.info().cell == "lab" ? "" : " --cell " + session.info().cell) +
+                            (session.info().domain == 0 ? "" : " --domain " + std::to_string(session.info().domain));
+  std::printf("try:");
+  for (const char* command : {" baton status", " | baton controllers", " | baton swap NAME", " | baton down"}) {
+    std::printf("%s%s", command, where.c_str());
+  }
+  std::printf("\n");
 }
 
 void down(const std::string& cell, int domain, bool json, ExitCode& exit_code) {
@@ -140,6 +146,7 @@ void logs(const std::string& cell, int domain, const std::string& service, int l
     found = true;
     std::printf("%s\n%s", entry.path().c_str(), lastLines(entry.path(), static_cast<std::size_t>(lines)).c_str());
   }
+  if (names.empty()) throw UnavailableError(folder.string() + " has no logs: its run ended before it began");
   if (!found) throw UsageError("no log of " + service + ": expected one of " + names);
 }
 

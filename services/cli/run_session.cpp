@@ -114,12 +114,13 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
   info_.domain = request.domain;
   info_.run = newRunId();
   info_.transport = request.transport;
-  info_.folder = runFolder(info_.run).string();
-  if (!request.no_recording && scenario.recording.enabled) {
-    info_.recording = request.out.empty() ? info_.folder + "/" + scenario.name + ".mcap" : checkedOut(request).string();
-  } else if (!request.out.empty()) {
+  const bool is_recorded = !request.no_recording && scenario.recording.enabled;
+  if (!is_recorded && !request.out.empty()) {
     throw UsageError("--out " + request.out + ": the scenario or --no-recording says not to record");
   }
+  if (!request.out.empty()) info_.recording = checkedOut(request).string();
+  info_.folder = runFolder(info_.run).string();  // nothing is refused from here on
+  if (is_recorded && request.out.empty()) info_.recording = info_.folder + "/" + scenario.name + ".mcap";
 
   std::vector<std::string> arguments{"--scenario",  info_.scenario,
                                      "--cell",      info_.cell,

@@ -177,7 +177,9 @@ void Plant::proceed() {
   for (;;) {
     considerSwap();
     if (master_.hold() != Hold::kNone) return;
+    constexpr std::int64_t kCatchUp_ns = 100'000'000;  // what a busy machine may cost; more is a stall
     if (!pacer_.isDue(master_.step() + 1, steadyNow())) return armTimer();
+    pacer_.forgive(master_.step() + 1, steadyNow(), kCatchUp_ns);
     endStep();
     if (arbiter_.holder() == kBrake && !scenario_.hasEnvironment()) {
       // Nobody has to answer: the steps would follow each other for ever in this call. Others get their turn in

@@ -18,7 +18,8 @@ void Plant::publishSwapActions() {
     }
     if (action->kind == Kind::kRefused) {
       publishRefusal(plan, action->reason.data());
-      service_.event(msg::SEVERITY_WARNING, "swap_refused", nameOf(plan.incoming) + ": " + action->reason.data());
+      service_.event(msg::SEVERITY_WARNING, "swap_refused",
+                     (plan.incoming == kBrake ? "" : nameOf(plan.incoming) + ": ") + action->reason.data());
       continue;
     }
     msg::SwapPlan message;

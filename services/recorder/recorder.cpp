@@ -194,6 +194,7 @@ void Recorder::writeBatch(const SampleQueue::Batch& batch) {
     const Topic& topic = *topics_[entry.topic];
     const auto payload = batch.payload(entry);
     if (!ledger_.book({topic.options.topic, entry.writer}, entry.sequence, payload)) continue;
+    if (!dds::isStatusTopic(topic.options.topic)) ++progress_;
     file_.write(channelOf(entry, topic), static_cast<std::uint32_t>(entry.sequence),
                 static_cast<std::uint64_t>(entry.log_time_ns), static_cast<std::uint64_t>(entry.source_timestamp_ns),
                 payload);
@@ -240,6 +241,7 @@ void Recorder::writeFile() {
   try {
     SampleQueue::Batch batch;
     std::chrono::steady_clock::time_point ended{};
+    std::uint64_t progress = 0;
     std::chrono::steady_clock::time_point flushed = std::chrono::steady_clock::now();
     publishStatus(msg::RECORDER_RECORDING, "");
     while (queue_.take(batch, kIdle)) {
@@ -253,7 +255,8 @@ void Recorder::writeFile() {
       }
       if (!has_run_ended_) continue;
       const bool is_first = ended == std::chrono::steady_clock::time_point{};
-      if (is_first || !batch.entries.empty()) ended = now;  // as long as something comes, more may
+      if (is_first || progress_ != progress) ended = now;  // as long as something comes, more may
+      progress = progress_;
       if (ledger_.isSettled() || now - ended > kManifestPatience) break;
     }
     finishFile();

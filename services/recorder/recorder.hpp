@@ -69,6 +69,7 @@ class Recorder {
   // file thread
   std::map<Ledger::Key, mcap::ChannelId> channels_;
   std::map<std::string, std::uint64_t> loop_steps_;  // latest step here, by topic of the loop that has to be complete
+  std::uint64_t progress_ = 0;                       // samples of which every one matters
   std::uint64_t acknowledged_ = 0;
   std::uint64_t published_ = 0;
 

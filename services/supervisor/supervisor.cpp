@@ -53,9 +53,11 @@ ExitCode Supervisor::run() {
   const bool was_refused = std::any_of(swaps_.begin(), swaps_.end(), [&](const msg::SwapOutcome& swap) {
     return swap.request_id() == 0 && !swap.done() && swap.at_step() <= sim_.step();  // else the run ended before
   });
-  if (was_refused && exit_code_ == ExitCode::kOk) {
-    exit_code_ = ExitCode::kFailed;
-    reason_ = "a handover that the scenario plans was refused";
+  if (was_refused) fail(ExitCode::kFailed, "a handover that the scenario plans was refused");
+  for (const msg::SwapOutcome& swap : swaps_) {
+    if (swap.done() && swap.plan_id() == 0) {
+      fail(ExitCode::kFailed, std::string(swap.outgoing().c_str()) + " lost the baton: " + swap.reason().c_str());
+    }
   }
   writeResult(deployment_.info, service_.scenario(),
               {.exit_code = exit_code_,

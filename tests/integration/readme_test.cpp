@@ -45,9 +45,6 @@ TEST(Readme, TheScenarioRuns) {
   const Bench bench;
   std::string text;
   for (const std::string& line : block("## Writing a scenario", "```yaml")) text += line + "\n";
-  const std::size_t at = text.find("ROBOTS");
-  ASSERT_NE(at, std::string::npos);
-  text.replace(at, 6, (deployFolder() / "robots").string());
   const nlohmann::json result = bench.batonJson({"run", bench.write("mine.yaml", text), "--json"});
   EXPECT_EQ(result.at("exit_code"), 0) << result;
   ASSERT_EQ(result.at("swaps").size(), 1U);

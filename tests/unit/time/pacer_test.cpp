@@ -77,6 +77,17 @@ TEST(Pacer, TimeSpentInAPauseIsNotCaughtUp) {
   EXPECT_EQ(pacer.deadline(51), resumed_ns + kStep_ns);
 }
 
+TEST(Pacer, AStallIsForgivenAndASmallDelayCaughtUp) {
+  constexpr std::int64_t kLimit_ns = 5 * kStep_ns;
+  Pacer pacer(kStep_ns, 1.0);
+  pacer.anchor(0, 0);
+  pacer.forgive(10, 10 * kStep_ns + kLimit_ns, kLimit_ns);
+  EXPECT_EQ(pacer.deadline(11), 11 * kStep_ns) << "within the limit the schedule stays";
+  const std::int64_t late_ns = 10 * kStep_ns + kLimit_ns + 1;
+  pacer.forgive(10, late_ns, kLimit_ns);
+  EXPECT_EQ(pacer.deadline(11), late_ns + kStep_ns) << "after a stall it goes on at its rate from there";
+}
+
 TEST(Pacer, RateZeroNeverWaits) {
   Pacer pacer(kStep_ns, 0.0);
   pacer.anchor(0, 1'000'000'000);
