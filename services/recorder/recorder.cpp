@@ -127,7 +127,8 @@ void Recorder::writerFound(const dds::DiscoveredWriter& writer) {
                                      .exclusive_ownership = writer.exclusive_ownership,
                                      .best_effort = !writer.reliable};
   const std::lock_guard lock(topics_mutex_);
-  writer_qos_[writer.guid] = writer.qos_text;
+  const std::optional<dds::Peer> peer = service_.participant().peer(dds::prefixOf(writer.guid));
+  writer_facts_[writer.guid] = {peer ? peer->service : "", writer.qos_text};
   const auto known =
       std::find_if(topics_.begin(), topics_.end(), [&](const auto& topic) { return topic->options == options; });
   const auto index = static_cast<std::uint32_t>(known - topics_.begin());
@@ -166,10 +167,9 @@ bool Recorder::isFor(std::uint32_t topic, const dds::Guid& writer) {
 // ------------------------------------------------------------------------------------------------------
 
 mcap::StringMap Recorder::channelMetadata(const dds::Guid& writer) const {
-  const std::optional<dds::Peer> peer = service_.participant().peer(dds::prefixOf(writer));
-  mcap::StringMap metadata{{"writer", dds::toString(writer)}, {"service", peer ? peer->service : ""}};
-  if (const auto found = writer_qos_.find(writer); found != writer_qos_.end()) metadata["qos"] = found->second;
-  return metadata;
+  const auto found = writer_facts_.find(writer);
+  const WriterFacts facts = found == writer_facts_.end() ? WriterFacts{} : found->second;
+  return {{"writer", dds::toString(writer)}, {"service", facts.service}, {"qos", facts.qos}};
 }
 
 mcap::ChannelId Recorder::channelOf(const SampleQueue::Entry& entry, const Topic& topic) {

@@ -60,7 +60,11 @@ class Recorder {
   // Topics and writers, found by discovery: added on the executor, read by the file thread.
   mutable std::mutex topics_mutex_;
   std::vector<std::unique_ptr<Topic>> topics_;
-  std::map<dds::Guid, std::string> writer_qos_;
+  struct WriterFacts {
+    std::string service;  // noted when it is found: who asks something leaves soon
+    std::string qos;
+  };
+  std::map<dds::Guid, WriterFacts> writer_facts_;
   // A reader hears writers of a stronger QoS as well: of two on a topic, each takes its own.
   std::atomic<bool> has_rivals_{false};
   std::mutex routes_mutex_;
