@@ -1,5 +1,6 @@
 /// What every controller is: a law that turns a state, a contact and a reference into joint efforts.
 /// A law is one file under laws/ (equation, source, parameters, reset, step, handover) and one line in registry.cpp.
+/// Two laws of the same structure share a class beside laws/ (tip_pd.hpp, force_control.hpp) and keep a file each.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,7 @@
 #include "control/model_terms.hpp"
 
+#include <Eigen/Cholesky>
+
 #include "robot/dynamics.hpp"
 
 namespace baton {
@@ -59,6 +61,51 @@ void computedEffort(const RobotModel& model, ModelUse use, const JointVector& q,
     }
     case ModelUse::kIgnoreBoth: tau = y; break;
   }
+}
+
+bool appliedAcceleration(const RobotModel& model, const RobotState& state, const Vector6& h_e,
+                         JointVector& y) noexcept {
+  const JointVector no_acceleration = JointVector::Zero(model.size());
+  JointVector held;
+  inverseDynamics(model, state.q, state.qd, no_acceleration, h_e, held);
+  JointMatrix B;
+  massMatrix(model, state.q, B);
+  const Eigen::LLT<JointMatrix> llt(B);
+  if (llt.info() != Eigen::Success) return false;
+  const JointVector result = llt.solve(state.tau_applied - held);
+  if (!result.allFinite()) return false;
+  y = result;
+  return true;
+}
+
+GravityCompensation::GravityCompensation(const RobotModel& believed, const ParameterValues& values)
+    : follows_position_(choice(values, "gravity") == "full"), fixed_(JointVector::Zero(believed.size())) {
+  if (choice(values, "gravity") == "fixed") {
+    gravityEffort(believed, vector<JointVector>(values, "gravity_position"), fixed_);
+  }
+}
+
+void GravityCompensation::effort(const RobotModel& believed, const JointVector& q, JointVector& g) const noexcept {
+  if (follows_position_) {
+    gravityEffort(believed, q, g);
+  } else {
+    g = fixed_;
+  }
+}
+
+std::vector<ParameterSpec> gravityParameters() {
+  return {{.name = "gravity",
+           .unit = "",
+           .doc = "gravity compensation: at the measured position, none, or fixed at gravity_position",
+           .size = ParameterSize::kChoice,
+           .default_numbers = {},
+           .choices = {"full", "none", "fixed"}},
+          {.name = "gravity_position",
+           .unit = "rad or m",
+           .doc = "joint position whose gravity effort `fixed` compensates",
+           .size = ParameterSize::kPerJoint,
+           .default_numbers = {0.0},
+           .choices = {}}};
 }
 
 }  // namespace baton

@@ -7,11 +7,16 @@
 
 // clang-format off
 #define BATON_LAWS(law)           \
+  law(adaptive)                   \
+  law(admittance)                 \
+  law(compliance)                 \
   law(forcePi)                    \
   law(impedance)                  \
   law(jointInverseDynamics)       \
   law(jointPd)                    \
-  law(operationalInverseDynamics)
+  law(operationalInverseDynamics) \
+  law(operationalPd)              \
+  law(parallelForcePosition)
 // clang-format on
 
 namespace baton {

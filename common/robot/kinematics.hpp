@@ -35,6 +35,12 @@ void computeKinematics(const RobotModel& model, const JointVector& q, const Join
 /// zero but for rounding, T has no inverse: returns false and leaves J_A as it was.
 [[nodiscard]] bool analyticalJacobian(const Kinematics& kinematics, Jacobian& J_A) noexcept;
 
+/// The same with T^-1 damped where sin(theta) < 0.1, so that it exists everywhere and no rate of an angle exceeds 12
+/// times the angular velocity: psi's rate is omega_u s / (s^2 + 0.05^2 (1 - (s / 0.1)^2)), s = sin(theta), instead of
+/// omega_u / s, omega_u the part of omega that turns the tip's axis sideways (variable damping as in Chiaverini,
+/// Siciliano, Egeland, IEEE Trans. Control Systems Technology (1994)). Where s is zero, phi is 0 as in zyzFromRotation.
+[[nodiscard]] Jacobian dampedAnalyticalJacobian(const Kinematics& kinematics) noexcept;
+
 /// Rotation vector (axis x angle, angle in [0, pi]) of R [rad].
 [[nodiscard]] Vector3 rotationVector(const Matrix3& R) noexcept;
 

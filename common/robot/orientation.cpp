@@ -20,6 +20,23 @@ double angleOf(double y, double x) {
 
 double sineOfTheta(const Matrix3& R) { return std::hypot(R(0, 2), R(1, 2)); }
 
+/// J_A with T^-1 written out; inverse_sine stands for 1 / sin(theta) in the rates of psi and phi.
+Jacobian zyzJacobian(const Kinematics& kinematics, double s_theta, double inverse_sine) {
+  const Matrix3& R = kinematics.X_WE.R;
+  const bool has_phi = s_theta >= kSingularSine;
+  const double c_phi = has_phi ? R(0, 2) / s_theta : 1.0, s_phi = has_phi ? R(1, 2) / s_theta : 0.0;
+  const double c_theta = R(2, 2);
+
+  Jacobian J_A(6, kinematics.J.cols());
+  for (Eigen::Index i = 0; i < kinematics.J.cols(); ++i) {
+    const Vector3 omega = kinematics.J.col(i).tail<3>();
+    const double theta_rate = c_phi * omega.y() - s_phi * omega.x();
+    const double psi_rate = (c_phi * omega.x() + s_phi * omega.y()) * inverse_sine;
+    J_A.col(i) << kinematics.J.col(i).head<3>(), omega.z() - c_theta * psi_rate, theta_rate, psi_rate;
+  }
+  return J_A;
+}
+
 }  // namespace
 
 Vector3 zyzFromRotation(const Matrix3& R) noexcept {
@@ -40,19 +57,18 @@ Matrix3 zyzRateMatrix(const Vector3& zyz) noexcept {
 }
 
 bool analyticalJacobian(const Kinematics& kinematics, Jacobian& J_A) noexcept {
-  const Matrix3& R = kinematics.X_WE.R;
-  const double s_theta = sineOfTheta(R);
+  const double s_theta = sineOfTheta(kinematics.X_WE.R);
   if (!(s_theta >= kSingularSine)) return false;  // not "<": NaN is refused too
-  const double c_theta = R(2, 2), c_phi = R(0, 2) / s_theta, s_phi = R(1, 2) / s_theta;
-
-  J_A.resize(Eigen::NoChange, kinematics.J.cols());
-  for (Eigen::Index i = 0; i < kinematics.J.cols(); ++i) {
-    const Vector3 omega = kinematics.J.col(i).tail<3>();
-    const double theta_rate = c_phi * omega.y() - s_phi * omega.x();
-    const double psi_rate = (c_phi * omega.x() + s_phi * omega.y()) / s_theta;
-    J_A.col(i) << kinematics.J.col(i).head<3>(), omega.z() - c_theta * psi_rate, theta_rate, psi_rate;
-  }
+  J_A = zyzJacobian(kinematics, s_theta, 1.0 / s_theta);
   return true;
+}
+
+Jacobian dampedAnalyticalJacobian(const Kinematics& kinematics) noexcept {
+  constexpr double kDampedSine = 0.1, kDamping = 0.05;
+  const double s_theta = sineOfTheta(kinematics.X_WE.R);
+  if (s_theta >= kDampedSine) return zyzJacobian(kinematics, s_theta, 1.0 / s_theta);
+  const double nearness = 1.0 - (s_theta / kDampedSine) * (s_theta / kDampedSine);
+  return zyzJacobian(kinematics, s_theta, s_theta / (s_theta * s_theta + kDamping * kDamping * nearness));
 }
 
 Vector3 rotationVector(const Matrix3& R) noexcept {

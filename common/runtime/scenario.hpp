@@ -49,7 +49,7 @@ struct Scenario {
   std::string robot_text;
   std::string name;
   std::string description;
-  RobotModel robot;
+  RobotModel robot;  // with the effort limits of the scenario, where it gives some
   std::int64_t step_ns = 1'000'000;
   int substeps = 1;
   std::uint64_t end_step = 0;  // 0: until stopped

@@ -1,4 +1,6 @@
 /// Scenario files: a whole experiment in YAML, as deploy/scenarios/demo.yaml documents it, to a checked Scenario.
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -8,44 +10,21 @@
 #include "base/error.hpp"
 #include "control/law.hpp"
 #include "control/nearest_name.hpp"
+#include "robot/dynamics.hpp"
+#include "robot/kinematics.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/scenario.hpp"
+#include "runtime/scenario_parts.hpp"
 #include "runtime/yaml.hpp"
 
 namespace baton {
 namespace {
 
-constexpr double kMaxTime_s = 1e6;  // longer runs are open-ended
-constexpr std::size_t kMaxWaypoints = 10'000;
 constexpr std::size_t kMaxSwaps = 10'000;
 constexpr std::size_t kMaxControllers = 16;
-constexpr std::size_t kMaxWalls = 16;
 
-// Wide enough for any experiment, narrow enough to catch a slip of units or of a decimal point.
-const NumberRange kTime{0.0, kMaxTime_s, "s"};
-const NumberRange kJointPosition{-1e3, 1e3, "rad or m"};
 const NumberRange kJointVelocity{-1e4, 1e4, "rad/s or m/s"};
-const NumberRange kPoint{-1e3, 1e3, "m"};
-const NumberRange kDirection{-1e6, 1e6, ""};
-const NumberRange kStiffness{0.0, 1e9, "N/m"};
-const NumberRange kDamping{0.0, 1e7, "N s/m"};
-const NumberRange kForce{-1e6, 1e6, "N"};
-const NumberRange kMoment{-1e6, 1e6, "N m"};
-
-/// Runs `read`; what it finds wrong is said to be at `node`.
-template <typename Read>
-decltype(auto) at(const YamlNode& node, const Read& read) {
-  try {
-    return read();
-  } catch (const UsageError& error) {
-    throw UsageError(node.place() + error.what());
-  }
-}
-
-JointVector readJoints(const YamlNode& node, const NumberRange& range, int n) {
-  const std::vector<double> values = node.numbers(static_cast<std::size_t>(n), range, "joint");
-  return Eigen::Map<const JointVector>(values.data(), n);
-}
+const NumberRange kEffortLimit{0.0, 1e9, "N m or N", true};
 
 // --- time
 
@@ -112,45 +91,35 @@ void readStart(const YamlMap& map, Scenario& scenario) {
   if (const auto velocity = start.find("velocity")) scenario.start_qd = readJoints(*velocity, kJointVelocity, n);
 }
 
-PlaneSpec readWall(const YamlNode& node) {
-  const YamlMap wall = node.map({"point_m", "normal", "stiffness_N_per_m", "damping_N_s_per_m"});
-  PlaneSpec plane;
-  plane.point_m = wall["point_m"].vector3(kPoint);
-  plane.normal = wall["normal"].vector3(kDirection);
-  constexpr double kShortest = 1e-6;  // below, its direction is rounding
-  if (plane.normal.norm() < kShortest) wall["normal"].fail("expected a direction, found a vector of length 0");
-  plane.stiffness_N_per_m = wall["stiffness_N_per_m"].number(kStiffness);
-  plane.damping_N_s_per_m = wall.numberOr("damping_N_s_per_m", kDamping, 0.0);
-  return plane;
-}
-
-void readEnvironment(const YamlMap& map, Scenario& scenario) {
-  const auto node = map.find("environment");
+void readEffortLimit(const YamlMap& map, RobotModel& robot) {
+  const auto node = map.find("effort_limit");
   if (!node) return;
-  for (const YamlNode& wall : node->map({"walls"})["walls"].list(1, kMaxWalls)) {
-    scenario.walls.push_back(readWall(wall));
-  }
+  const JointVector limit = readJointsOrOne(*node, kEffortLimit, robot.size());
+  for (int i = 0; i < robot.size(); ++i) robot.joints[static_cast<std::size_t>(i)].effort_limit = limit(i);
 }
 
-TrajectorySpec readTrajectory(const YamlNode& node, int n) {
-  const YamlMap map = node.map({"interpolation", "waypoints", "force_N", "moment_Nm"});
-  TrajectorySpec trajectory;
-  if (const auto word = map.find("interpolation")) {
-    trajectory.interpolation =
-        word->oneOf<Interpolation>({{"quintic", Interpolation::kQuintic}, {"cubic", Interpolation::kCubic}});
+/// The slope of friction near rest, D = viscous + coulomb / coulomb_velocity, makes poles of B(q) qdd + D qd = 0: the
+/// eigenvalues of B^-1 D. RK4 is stable for poles up to 2.785 / h; beyond, the joints chatter where they should rest.
+void warnOfFastFriction(const YamlMap& map, Scenario& scenario) {
+  constexpr double kStable = 2.785;
+  const RobotModel& robot = scenario.robot;
+  JointVector root_of_D(robot.size());
+  for (int i = 0; i < robot.size(); ++i) {
+    const JointFriction& friction = robot.joints[static_cast<std::size_t>(i)].friction;
+    root_of_D(i) = std::sqrt(friction.viscous + friction.coulomb / friction.coulomb_velocity);
   }
-  for (const YamlNode& item : map["waypoints"].list(1, kMaxWaypoints)) {
-    const YamlMap waypoint = item.map({"time_s", "position"});
-    const double time_s = waypoint["time_s"].number(kTime);
-    if (!trajectory.waypoints.empty() && time_s <= trajectory.waypoints.back().time_s) {
-      waypoint["time_s"].refuse("a time after the waypoint before, " + shownNumber(trajectory.waypoints.back().time_s) +
-                                " s");
-    }
-    trajectory.waypoints.push_back({time_s, readJoints(waypoint["position"], kJointPosition, n)});
-  }
-  if (const auto force = map.find("force_N")) trajectory.h_d.head<3>() = force->vector3(kForce);
-  if (const auto moment = map.find("moment_Nm")) trajectory.h_d.tail<3>() = moment->vector3(kMoment);
-  return trajectory;
+  JointMatrix B;
+  massMatrix(robot, scenario.start_q, B);
+  const JointMatrix scale = root_of_D.asDiagonal();
+  const JointMatrix symmetric = scale * B.llt().solve(scale);  // with the eigenvalues of B^-1 D
+  const double pole = symmetric.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
+  const double substeps = std::ceil(pole * scenario.stepSeconds() / kStable);
+  if (!(substeps > scenario.substeps)) return;
+  std::ostringstream text;
+  text << map["step_s"].place() << "joint friction makes a pole at " << pole
+       << " 1/s near rest, too fast for the plant's sub-steps; give substeps: " << substeps
+       << ", or a larger coulomb_velocity in the robot file";
+  scenario.warnings.push_back(text.str());
 }
 
 // --- controllers
@@ -178,6 +147,23 @@ ParameterValues readParameters(const YamlNode& node, const LawInfo& law, int n) 
   return completeParameters(law.parameters, given, n);
 }
 
+/// A law says for itself whether the reference has the part that it follows: its first step tells, before a run does.
+bool missesReference(Law& law, const Scenario& scenario) {
+  LawInput input;
+  input.dt_s = scenario.stepSeconds();
+  Kinematics kinematics;
+  computeKinematics(scenario.robot, scenario.start_q, scenario.start_qd, kinematics);
+  input.state = {.q = scenario.start_q,
+                 .qd = scenario.start_qd,
+                 .X_WE = kinematics.X_WE,
+                 .V_WE = kinematics.V_WE,
+                 .tau_applied = JointVector::Zero(scenario.robot.size())};
+  Trajectory(scenario.robot, scenario.trajectory).evaluate(0.0, input.reference);
+  JointVector tau;
+  law.reset();
+  return law.step(input, tau) == LawStatus::kMissingReference;
+}
+
 ControllerConfig readController(const YamlNode& node, const Scenario& scenario) {
   const YamlMap map = node.map({"name", "law", "parameters"});
   ControllerConfig controller;
@@ -201,7 +187,13 @@ ControllerConfig readController(const YamlNode& node, const Scenario& scenario) 
   const auto parameters = map.find("parameters");
   if (parameters) controller.parameters = readParameters(*parameters, law, scenario.robot.size());
   // A law may refuse a robot, or parameters that do not go together.
-  at(parameters.value_or(node), [&] { (void)makeLaw(law.name, scenario.robot, controller.parameters); });
+  const std::unique_ptr<Law> made =
+      at(parameters.value_or(node), [&] { return makeLaw(law.name, scenario.robot, controller.parameters); });
+  if (missesReference(*made, scenario)) {
+    map["law"].fail(
+        "expected a law that follows the tip, because the trajectory's waypoints are given as tip_m, found " +
+        law.name + ", which follows joints");
+  }
   controller.parameters = completeParameters(law.parameters, controller.parameters, scenario.robot.size());
   return controller;
 }
@@ -292,10 +284,11 @@ struct RobotFile {
 /// @param robot_file  finds the robot file that the node names.
 Scenario readScenario(const std::string& file, const std::string& text,
                       const std::function<RobotFile(const YamlNode&)>& robot_file) {
-  const YamlMap map = YamlNode::parse(file, text)
-                          .map({"name", "description", "robot", "step_s", "substeps", "duration_s", "mode", "rate",
-                                "late", "max_missed_steps", "start", "environment", "trajectory", "controllers",
-                                "active", "standby", "swaps", "baton", "recording"});
+  const YamlMap map =
+      YamlNode::parse(file, text).map({"name",         "description", "robot",       "step_s",     "substeps",
+                                       "duration_s",   "mode",        "rate",        "late",       "max_missed_steps",
+                                       "effort_limit", "start",       "environment", "trajectory", "controllers",
+                                       "active",       "standby",     "swaps",       "baton",      "recording"});
   Scenario scenario;
   scenario.file = file;
   scenario.text = text;
@@ -305,11 +298,15 @@ Scenario readScenario(const std::string& file, const std::string& text,
   scenario.robot_file = robot.path;
   scenario.robot_text = robot.text;
   scenario.robot = parseRobot(robot.shown_as, robot.text, &scenario.warnings);
+  readEffortLimit(map, scenario.robot);
 
   readTime(map, scenario);
   readStart(map, scenario);
-  readEnvironment(map, scenario);
-  scenario.trajectory = readTrajectory(map["trajectory"], scenario.robot.size());
+  warnOfFastFriction(map, scenario);
+  if (const auto environment = map.find("environment")) {
+    scenario.walls = readWalls(environment->map({"walls"})["walls"]);
+  }
+  scenario.trajectory = readTrajectory(map["trajectory"], scenario.robot, scenario.start_q);
   for (const YamlNode& controller : map["controllers"].list(1, kMaxControllers)) {
     scenario.controllers.push_back(readController(controller, scenario));
   }

@@ -37,7 +37,8 @@ double impedanceForce(const Scenario& scenario, const ControllerConfig& controll
   const double Kp = numbers(controller.parameters, "kp").at(2);
   const double Ke = wall.stiffness_N_per_m;
   Reference goal;
-  Trajectory(scenario.robot, scenario.trajectory).evaluate(scenario.trajectory.waypoints.back().time_s, goal);
+  const Trajectory trajectory(scenario.robot, scenario.trajectory);
+  trajectory.evaluate(trajectory.endTime(), goal);
   return Kp * Ke / (Kp + Ke) * (goal.X_WE.p.z() - wall.point_m.z());
 }
 

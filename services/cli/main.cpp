@@ -6,7 +6,9 @@
 #include "bag_command.hpp"
 #include "control/nearest_name.hpp"
 #include "demo_command.hpp"
+#include "figures_command.hpp"
 #include "laws_command.hpp"
+#include "metrics_command.hpp"
 #include "model_command.hpp"
 #include "operate_commands.hpp"
 #include "replay_command.hpp"
@@ -31,6 +33,8 @@ int main(int argc, char** argv) {
     baton::addOperateCommands(app, exit_code);
     baton::addReplayCommand(app, exit_code);
     baton::addBagCommand(app, exit_code);
+    baton::addMetricsCommand(app);
+    baton::addFiguresCommand(app, exit_code);
     baton::addModelCommand(app, exit_code);
     baton::addLawsCommand(app);
     try {

@@ -1,7 +1,5 @@
 #include "wall_responder.hpp"
 
-#include <algorithm>
-
 #include "control/law.hpp"
 #include "environment/plane.hpp"
 
@@ -28,14 +26,7 @@ void WallResponder::onState(const msg::PlantState& message) {
   if (!service_.isReady() || service_.isOver() || !fromMessage(message, service_.scenario().robot.size(), state_))
     return;
   const Vector3 v_WE = state_.V_WE.head<3>();
-  Contact total;
-  for (const PlaneSpec& wall : service_.scenario().walls) {
-    const Contact one = planeContact(wall, state_.X_WE.p, v_WE);
-    total.h_e += one.h_e;
-    total.df_dp += one.df_dp;
-    total.df_dv += one.df_dv;
-    total.penetration = std::max(total.penetration, one.penetration);
-  }
+  const Contact total = planesContact(service_.scenario().walls, state_.X_WE.p, v_WE);
   toMessage({message.step(), message.time_ns()}, total, message_);
   contact_out_.write(message_);
   service_.at(message.step());

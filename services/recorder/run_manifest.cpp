@@ -7,6 +7,7 @@
 
 #include "dds/hash.hpp"
 #include "msg/idl_text.hpp"
+#include "runtime/build_id.hpp"
 
 namespace baton {
 
@@ -20,6 +21,7 @@ mcap::StringMap runManifest(const ServiceOptions& options, const Scenario& scena
   return {{"version", BATON_VERSION},
           {"compiler", BATON_COMPILER},
           {"flags", BATON_FLAGS},
+          {"build_id", buildId()},
           {"scenario", scenario.name},
           {"scenario_file", scenario.file},
           {"robot", scenario.robot.name},

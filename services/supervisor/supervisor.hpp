@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "child.hpp"
 #include "runtime/cell.hpp"
+#include "runtime/child.hpp"
 #include "runtime/service.hpp"
 
 namespace baton {

@@ -6,26 +6,17 @@
 /// The report prints -Kd qdd. That would feed back acceleration: it adds inertia and damps nothing.
 #include "control/law.hpp"
 #include "control/model_terms.hpp"
-#include "robot/dynamics.hpp"
 
 namespace baton::laws {
 namespace {
-
-enum class Gravity { kFull, kNone, kFixed };
 
 class JointPd final : public Law {
  public:
   JointPd(const RobotModel& model, const ParameterValues& values)
       : model_(believedModel(model, values)),
+        gravity_(model_, values),
         kp_(vector<JointVector>(values, "kp")),
-        kd_(vector<JointVector>(values, "kd")),
-        fixed_gravity_(JointVector::Zero(model.size())) {
-    const std::string& word = choice(values, "gravity");
-    gravity_ = word == "full" ? Gravity::kFull : word == "none" ? Gravity::kNone : Gravity::kFixed;
-    if (gravity_ == Gravity::kFixed) {
-      gravityEffort(model_, vector<JointVector>(values, "gravity_position"), fixed_gravity_);
-    }
-  }
+        kd_(vector<JointVector>(values, "kd")) {}
 
   void reset() noexcept override {}
   void handover(const LawInput&) noexcept override {}
@@ -36,8 +27,8 @@ class JointPd final : public Law {
     if (ref.q.size() != model_.size()) return LawStatus::kMissingReference;
     if (!state.q.allFinite() || !state.qd.allFinite() || !ref.q.allFinite()) return LawStatus::kNotFinite;
 
-    JointVector effort = fixed_gravity_;
-    if (gravity_ == Gravity::kFull) gravityEffort(model_, state.q, effort);
+    JointVector effort;
+    gravity_.effort(model_, state.q, effort);
     effort += kp_.cwiseProduct(ref.q - state.q) - kd_.cwiseProduct(state.qd);
 
     if (!effort.allFinite()) return LawStatus::kNotFinite;
@@ -47,46 +38,34 @@ class JointPd final : public Law {
 
  private:
   RobotModel model_;
+  GravityCompensation gravity_;
   JointVector kp_, kd_;
-  JointVector fixed_gravity_;  // zero unless gravity is fixed
-  Gravity gravity_ = Gravity::kFull;
 };
 
 }  // namespace
 
 LawInfo jointPd() {
+  std::vector<ParameterSpec> parameters = {
+      {.name = "kp",
+       .unit = "N m/rad or N/m",
+       .doc = "stiffness",
+       .size = ParameterSize::kPerJoint,
+       .default_numbers = {90.0},
+       .minimum = 0.0,
+       .choices = {}},
+      {.name = "kd",
+       .unit = "N m s/rad or N s/m",
+       .doc = "damping",
+       .size = ParameterSize::kPerJoint,
+       .default_numbers = {60.0},
+       .minimum = 0.0,
+       .choices = {}},
+  };
+  for (ParameterSpec& spec : gravityParameters()) parameters.push_back(std::move(spec));
+  parameters.push_back(massScaleParameter());
   return {.name = "joint_pd",
           .summary = "joint PD with gravity compensation, for set-points",
-          .parameters =
-              {
-                  {.name = "kp",
-                   .unit = "N m/rad or N/m",
-                   .doc = "stiffness",
-                   .size = ParameterSize::kPerJoint,
-                   .default_numbers = {90.0},
-                   .minimum = 0.0,
-                   .choices = {}},
-                  {.name = "kd",
-                   .unit = "N m s/rad or N s/m",
-                   .doc = "damping",
-                   .size = ParameterSize::kPerJoint,
-                   .default_numbers = {60.0},
-                   .minimum = 0.0,
-                   .choices = {}},
-                  {.name = "gravity",
-                   .unit = "",
-                   .doc = "gravity compensation: at the measured position, none, or fixed at gravity_position",
-                   .size = ParameterSize::kChoice,
-                   .default_numbers = {},
-                   .choices = {"full", "none", "fixed"}},
-                  {.name = "gravity_position",
-                   .unit = "rad or m",
-                   .doc = "joint position whose gravity effort `fixed` compensates",
-                   .size = ParameterSize::kPerJoint,
-                   .default_numbers = {0.0},
-                   .choices = {}},
-                  massScaleParameter(),
-              },
+          .parameters = std::move(parameters),
           .make = [](const RobotModel& model, const ParameterValues& values) {
             return std::make_unique<JointPd>(model, values);
           }};

@@ -98,6 +98,19 @@ TEST(ForcePi, DoesNotWindUpAgainstAnEffortLimit) {
   EXPECT_GT(peak_untold, 3 * peak_told);
 }
 
+TEST(ForcePi, IntegratesOnWhileAHandoversRemainderFades) {
+  // The plant adds a remainder to the effort: what is applied is not what was commanded, but no limit cut it.
+  RobotModel robot = rppRobot();
+  robot.joints[0].effort_limit = 20.0;
+  ClosedLoop faded = forceLoop(robot, {0.0, 0.0, 3.0}), plain = forceLoop(robot, {0.0, 0.0, 3.0});
+  for (int k = 0; k < 1000; ++k) {
+    ASSERT_TRUE(faded.step());
+    ASSERT_TRUE(plain.step());
+    faded.input.state.tau_applied.array() -= 1.0;
+    ASSERT_EQ(faded.tau, plain.tau);
+  }
+}
+
 TEST(ForcePi, HandoverMatchesTheEffortThatWasHeld) {
   // Three joints, three integrals: any effort can be matched.
   const RobotModel robot = rppRobot();

@@ -3,8 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
+#include <limits>
 #include <random>
+#include <vector>
+
+#include "base/error.hpp"
 
 namespace baton {
 namespace {
@@ -84,26 +89,137 @@ TEST(Plane, DoesNotDependOnTheLengthOfItsNormal) {
   EXPECT_LT((one.h_e - seven.h_e).norm(), 1e-12 * one.h_e.norm());
 }
 
+/// Derivatives against central differences. The force is linear where it is smooth, so these are exact but for
+/// rounding: 1e-13 N / 1e-4.
+template <typename ContactAt>
+void expectDerivatives(const ContactAt& contact_at, const Vector3& p, const Vector3& v) {
+  constexpr double kStep = 1e-4;
+  const Contact contact = contact_at(p, v);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vector3 d = kStep * Vector3::Unit(axis);
+    const Vector3 by_p = (contact_at(p + d, v).h_e - contact_at(p - d, v).h_e).template head<3>() / (2 * kStep);
+    const Vector3 by_v = (contact_at(p, v + d).h_e - contact_at(p, v - d).h_e).template head<3>() / (2 * kStep);
+    EXPECT_LT((by_p - contact.df_dp.col(axis)).norm(), 1e-8);
+    EXPECT_LT((by_v - contact.df_dv.col(axis)).norm(), 1e-8);
+  }
+}
+
 TEST(Plane, DerivativesAreThoseOfTheForce) {
-  // The force is linear in contact, so central differences are exact but for rounding: 1e-13 N / 1e-4.
   const PlaneSpec wall = obliqueWall();
   const Vector3 n = wall.normal.normalized();
-  constexpr double kStep = 1e-4;
   std::mt19937 generator(2);
   for (int i = 0; i < 50; ++i) {
-    const Vector3 p = wall.point_m + 0.05 * n + n.cross(randomVector(generator, 1.0));
-    const Vector3 v = randomVector(generator, 0.1);
-    const Contact contact = planeContact(wall, p, v);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Vector3 d = kStep * Vector3::Unit(axis);
-      const Vector3 by_p =
-          (planeContact(wall, p + d, v).h_e - planeContact(wall, p - d, v).h_e).head<3>() / (2 * kStep);
-      const Vector3 by_v =
-          (planeContact(wall, p, v + d).h_e - planeContact(wall, p, v - d).h_e).head<3>() / (2 * kStep);
-      EXPECT_LT((by_p - contact.df_dp.col(axis)).norm(), 1e-8);
-      EXPECT_LT((by_v - contact.df_dv.col(axis)).norm(), 1e-8);
+    for (const double depth : {0.05, -0.05}) {  // inside, outside
+      const Vector3 p = wall.point_m + depth * n + n.cross(randomVector(generator, 1.0));
+      expectDerivatives([&](const auto& at, const auto& v) { return planeContact(wall, at, v); }, p,
+                        randomVector(generator, 0.1));
     }
   }
+}
+
+TEST(Plane, HoldsTheTipFromBothSidesUnlessUnilateral) {
+  PlaneSpec spring = obliqueWall();
+  spring.unilateral = false;
+  const Vector3 n = spring.normal.normalized();
+  std::mt19937 generator(3);
+  for (const double depth : {-0.3, -0.01, 0.01, 0.3}) {
+    const Vector3 p = spring.point_m + depth * n + n.cross(randomVector(generator, 1.0));
+    const Contact still = planeContact(spring, p, Vector3::Zero());
+    EXPECT_LT((still.h_e.head<3>() - 800.0 * depth * n).norm(), 1e-11) << depth;
+    EXPECT_NEAR(still.penetration, std::abs(depth), 1e-15) << depth;
+    const Contact leaving = planeContact(spring, p, -10.0 * n);  // damping wins over the spring: it pulls
+    EXPECT_LT((leaving.h_e.head<3>() - (800.0 * depth - 150.0) * n).norm(), 1e-11) << depth;
+    expectDerivatives([&](const auto& at, const auto& v) { return planeContact(spring, at, v); }, p,
+                      randomVector(generator, 1.0));
+  }
+}
+
+TEST(Plane, SpringFromBothSidesIsAWallWhereThatPushes) {
+  PlaneSpec spring = obliqueWall();
+  spring.unilateral = false;
+  const Vector3 n = spring.normal.normalized();
+  const Vector3 p = spring.point_m + 0.05 * n, v(0.1, -0.1, 0.05);
+  const Contact two_sided = planeContact(spring, p, v), one_sided = planeContact(obliqueWall(), p, v);
+  EXPECT_EQ(two_sided.h_e, one_sided.h_e);
+  EXPECT_EQ(two_sided.df_dp, one_sided.df_dp);
+  EXPECT_EQ(two_sided.df_dv, one_sided.df_dv);
+  EXPECT_EQ(two_sided.penetration, one_sided.penetration);
+}
+
+/// The report's wall, an oblique one and a spring, all of which a tip at (0.5, -0.6, 0.72) touches.
+std::vector<PlaneSpec> threePlanes() {
+  return {
+      reportWall(200.0),
+      {.point_m = {0.4, -0.5, 0.6}, .normal = {1.0, -1.0, 0.5}, .stiffness_N_per_m = 500.0, .damping_N_s_per_m = 8.0},
+      {.point_m = {0.9, 0.0, 0.0}, .normal = {1.0, 0.0, 0.0}, .stiffness_N_per_m = 90.0, .unilateral = false}};
+}
+
+TEST(Planes, AddUpForcesAndDerivatives) {
+  const Vector3 p(0.5, -0.6, 0.72), v(0.1, 0.2, -0.1);
+  const std::vector<PlaneSpec> planes = threePlanes();
+  Contact sum;
+  for (const PlaneSpec& plane : planes) {
+    const Contact one = planeContact(plane, p, v);
+    EXPECT_GT(one.penetration, 0.0);
+    sum.h_e += one.h_e;
+    sum.df_dp += one.df_dp;
+    sum.df_dv += one.df_dv;
+  }
+  const Contact all = planesContact(planes, p, v);
+  EXPECT_EQ(all.h_e, sum.h_e);
+  EXPECT_EQ(all.df_dp, sum.df_dp);
+  EXPECT_EQ(all.df_dv, sum.df_dv);
+  EXPECT_NEAR(all.penetration, 0.4, 1e-15);  // the spring's
+  expectDerivatives([&](const auto& at, const auto& speed) { return planesContact(planes, at, speed); }, p, v);
+}
+
+TEST(Planes, ThatAreNotTouchedOrNotThereGiveNothing) {
+  EXPECT_TRUE(planesContact({}, {0, 0, 1}, {0, 0, 1}).h_e.isZero(0.0));
+  const std::vector<PlaneSpec> walls{reportWall(200.0), obliqueWall()};
+  const Contact contact = planesContact(walls, {-1.0, 1.0, -1.0}, {0, 0, 1});
+  EXPECT_TRUE(contact.h_e.isZero(0.0));
+  EXPECT_TRUE(contact.df_dp.isZero(0.0));
+  EXPECT_EQ(contact.penetration, 0.0);
+}
+
+TEST(Planes, TakeForceOnlyAlongTheirNormals) {
+  // The report's Figure 51: a wall normal to z cannot be pressed with (0, 1, 3) N, wherever the tip goes; with a wall
+  // normal to y beside it, it can.
+  const Vector3 f_d(0.0, 1.0, 3.0), p(0.5, 0.02, 0.72);
+  const auto nearest = [&](const std::vector<PlaneSpec>& planes) -> Vector3 {
+    const Contact here = planesContact(planes, p, Vector3::Zero());
+    const Vector3 missing = f_d - here.h_e.head<3>();
+    const Vector3 move = here.df_dp.fullPivLu().solve(missing);
+    return planesContact(planes, p + move, Vector3::Zero()).h_e.head<3>();
+  };
+  const PlaneSpec side{.point_m = Vector3::Zero(), .normal = {0.0, 1.0, 0.0}, .stiffness_N_per_m = 100.0};
+  EXPECT_LT((nearest({reportWall(100.0)}) - Vector3(0.0, 0.0, 3.0)).norm(), 1e-12);
+  EXPECT_LT((nearest({reportWall(100.0), side}) - f_d).norm(), 1e-12);
+}
+
+std::string messageAfter(void (*change)(PlaneSpec&)) {
+  PlaneSpec plane = reportWall(200.0);
+  change(plane);
+  try {
+    checkPlane(plane);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(CheckPlane, RefusesWhatIsNoPlane) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(messageAfter([](PlaneSpec&) {}), "accepted");
+  EXPECT_EQ(messageAfter([](PlaneSpec& plane) { plane.stiffness_N_per_m = 0.0; }), "accepted");
+  EXPECT_EQ(messageAfter([](PlaneSpec& plane) { plane.point_m.x() = kNaN; }), "point: expected finite numbers");
+  EXPECT_EQ(messageAfter([](PlaneSpec& plane) { plane.normal.x() = kNaN; }), "normal: expected finite numbers");
+  EXPECT_EQ(messageAfter([](PlaneSpec& plane) { plane.normal.setZero(); }),
+            "normal: expected a direction, found a vector of length 0");
+  EXPECT_EQ(messageAfter([](PlaneSpec& plane) { plane.stiffness_N_per_m = -1.0; }),
+            "stiffness: expected a finite number of at least 0, found -1");
+  EXPECT_EQ(messageAfter([](PlaneSpec& plane) { plane.damping_N_s_per_m = kNaN; }),
+            "damping: expected a finite number of at least 0, found nan");
 }
 
 TEST(Plane, DampingTakesEnergyOverACycleAndTheSpringTakesNone) {

@@ -7,6 +7,7 @@
 
 #include "robot/dynamics.hpp"
 #include "robot/kinematics.hpp"
+#include "robot/regressor.hpp"
 #include "robot/simulation.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/robots.hpp"
@@ -38,6 +39,7 @@ TEST(RobotHotPath, NeverAllocates) {
     computeKinematics(model, q, qd, kinematics);
     Jacobian J_A;
     EXPECT_TRUE(analyticalJacobian(kinematics, J_A));
+    EXPECT_TRUE(dampedAnalyticalJacobian(kinematics).allFinite());
     const Matrix3 R = tipPose(model, q).R;
     const Vector3 angles = zyzFromRotation(R) + zyzRateMatrix(rotationVector(R)).col(0);
     EXPECT_TRUE(angles.allFinite());
@@ -51,6 +53,9 @@ TEST(RobotHotPath, NeverAllocates) {
     frictionEffort(model, qd, friction);
     massMatrix(model, q, B);
     lagrangeDynamics(model, q, qd, lagrange);
+    Regressor Y;
+    dynamicsRegressor(model, q, qd, qd, qd, Y);
+    EXPECT_TRUE((Y * dynamicParameters(model)).allFinite());
     EXPECT_TRUE(forwardDynamics(model, q, qd, tau, h_e, qdd));
     EXPECT_GT(kineticEnergy(model, q, qd) + std::abs(potentialEnergy(model, q)), 0.0);
 

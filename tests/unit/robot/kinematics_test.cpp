@@ -187,5 +187,51 @@ TEST(AnalyticalJacobian, IsRefusedWhereTheAnglesAreSingularAndLeftAlone) {
   EXPECT_FALSE(analyticalJacobian(broken, J_A));
 }
 
+TEST(DampedAnalyticalJacobian, IsTheAnalyticalOneAwayFromTheSingularity) {
+  std::mt19937 generator(8);
+  for (int k = 0; k < 100; ++k) {
+    const RobotModel model = test::randomChain(5, k);
+    const Kinematics kinematics = kinematicsAt(model, test::randomJointVector(generator, 5, 3.0), JointVector::Zero(5));
+    if (std::sin(zyzFromRotation(kinematics.X_WE.R)(1)) < 0.1) continue;
+    Jacobian J_A;
+    ASSERT_TRUE(analyticalJacobian(kinematics, J_A));
+    EXPECT_EQ(dampedAnalyticalJacobian(kinematics), J_A);
+  }
+}
+
+/// A tip tilted by theta from the vertical, at angle phi, that can turn about each axis of the world.
+Kinematics tilted(double phi, double theta) {
+  Kinematics kinematics;
+  kinematics.X_WE.R =
+      (Eigen::AngleAxisd(phi, Vector3::UnitZ()) * Eigen::AngleAxisd(theta, Vector3::UnitY())).toRotationMatrix();
+  kinematics.J.setZero(6, 3);
+  kinematics.J.bottomRows<3>() = Matrix3::Identity();
+  return kinematics;
+}
+
+TEST(DampedAnalyticalJacobian, ExistsEverywhereBoundedAndWithoutASeam) {
+  for (const double theta : {0.0, 1e-12, 1e-8, 1e-4, 0.01, 0.03, 0.05, 0.07, 0.09, 0.0999, 0.1001}) {
+    for (const double tilt : {theta, kPi - theta}) {
+      const Jacobian J_A = dampedAnalyticalJacobian(tilted(0.7, tilt));
+      EXPECT_LT(J_A.cwiseAbs().maxCoeff(), 12.0) << tilt;
+      // theta's rate, which has no singularity, is untouched, except that phi is 0 by convention where it has no value.
+      const double phi = std::sin(theta) < 1e-9 ? 0.0 : 0.7;
+      EXPECT_LT((J_A.row(4) - Eigen::RowVector3d(-std::sin(phi), std::cos(phi), 0.0)).norm(), 1e-6) << tilt;
+    }
+  }
+  const double edge = std::asin(0.1);
+  const Jacobian inside = dampedAnalyticalJacobian(tilted(0.7, edge - 1e-9));
+  const Jacobian outside = dampedAnalyticalJacobian(tilted(0.7, edge + 1e-9));
+  EXPECT_LT((inside - outside).norm(), 1e-5);  // 2e-9 times a slope of 1e2 to 1e3
+}
+
+TEST(DampedAnalyticalJacobian, LeavesTheRppAsItIsThroughTheVertical) {
+  for (const double gap : {-0.05, -1e-3, -1e-6, 0.0, 1e-6, 1e-3, 0.05}) {
+    const Jacobian J_A =
+        dampedAnalyticalJacobian(kinematicsAt(test::rppRobot(), Vector3(kPi / 2 + gap, 0.1, 0.1), Vector3::Zero()));
+    EXPECT_LT((J_A.block<3, 1>(3, 0) - Vector3(0.0, gap <= 0.0 ? -1.0 : 1.0, 0.0)).norm(), 1e-9) << gap;
+  }
+}
+
 }  // namespace
 }  // namespace baton

@@ -98,11 +98,14 @@ TEST(ScenarioFile, GivesEachFieldItsPlace) {
   EXPECT_EQ(s.walls[0].normal, Vector3(0.0, 0.0, 2.0));
   EXPECT_EQ(s.walls[0].stiffness_N_per_m, 200.0);
   EXPECT_EQ(s.walls[0].damping_N_s_per_m, 5.0);
+  EXPECT_TRUE(s.walls[0].unilateral);
 
-  EXPECT_EQ(s.trajectory.interpolation, Interpolation::kCubic);
-  ASSERT_EQ(s.trajectory.waypoints.size(), 2u);
-  EXPECT_EQ(s.trajectory.waypoints[1].time_s, 2.0);
-  EXPECT_EQ(s.trajectory.waypoints[1].q, JointVector(Vector3(kPi / 6.0, 0.25, 0.15)));
+  const auto& path = std::get<JointPath>(s.trajectory.motion);
+  EXPECT_EQ(path.timing.interpolation, Interpolation::kCubic);
+  ASSERT_EQ(path.waypoints.size(), 2u);
+  EXPECT_EQ(path.waypoints[1].time_s, 2.0);
+  EXPECT_EQ(path.waypoints[1].q, JointVector(Vector3(kPi / 6.0, 0.25, 0.15)));
+  EXPECT_FALSE(s.trajectory.noise.has_value());
   EXPECT_EQ(s.trajectory.h_d, (Vector6() << 0.0, 0.0, 3.0, 0.5, 0.0, 0.0).finished());
 
   ASSERT_EQ(s.controllers.size(), 3u);
@@ -151,7 +154,7 @@ TEST(ScenarioFile, NeedsNoMoreThanARobotAStepAMotionAndAController) {
   EXPECT_EQ(s.start_q, JointVector(Vector3::Zero()));
   EXPECT_EQ(s.start_qd, JointVector(Vector3::Zero()));
   EXPECT_FALSE(s.hasEnvironment());
-  EXPECT_EQ(s.trajectory.interpolation, Interpolation::kQuintic);
+  EXPECT_EQ(std::get<JointPath>(s.trajectory.motion).timing.interpolation, Interpolation::kQuintic);
   EXPECT_TRUE(s.hot_standby);
   EXPECT_TRUE(s.swaps.empty());
   EXPECT_EQ(s.baton.margin_steps, defaults.baton.margin_steps);
@@ -361,17 +364,17 @@ TEST(ScenarioFile, SaysWhichControllersThereAre) {
 class ScenarioFolder : public testing::Test {
  protected:
   ScenarioFolder() {
-    std::filesystem::create_directories(path_ / "robots");
-    std::filesystem::create_directories(path_ / "scenarios");
+    std::filesystem::create_directories(root / "robots");
+    std::filesystem::create_directories(root / "scenarios");
   }
-  ~ScenarioFolder() override { std::filesystem::remove_all(path_); }
+  ~ScenarioFolder() override { std::filesystem::remove_all(root); }
 
   std::string write(const std::string& relative, const std::string& text) const {
-    std::ofstream(path_ / relative) << text;
-    return (path_ / relative).string();
+    std::ofstream(root / relative) << text;
+    return (root / relative).string();
   }
 
-  const std::filesystem::path path_ =
+  const std::filesystem::path root =
       std::filesystem::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
@@ -385,7 +388,7 @@ TEST_F(ScenarioFolder, FindsTheRobotRelativeToTheScenarioAndKeepsBothTexts) {
   const Scenario s = loadScenario(file);
   EXPECT_EQ(s.file, std::filesystem::path(file).lexically_normal());
   EXPECT_EQ(s.text, text);
-  EXPECT_EQ(s.robot_file, (path_ / "robots/link.yaml").lexically_normal());
+  EXPECT_EQ(s.robot_file, (root / "robots/link.yaml").lexically_normal());
   EXPECT_EQ(s.robot_text, robot_text);
   EXPECT_EQ(s.warnings.size(), 1u);  // the link is no possible body
 
@@ -399,7 +402,7 @@ TEST_F(ScenarioFolder, FindsTheRobotRelativeToTheScenarioAndKeepsBothTexts) {
 
 TEST_F(ScenarioFolder, NamesTheRobotFileThatIsMissingOrWrong) {
   const std::string file = write("scenarios/a.yaml", "name: a\nrobot: ../robots/b.yaml\n");
-  const std::string robot = (path_ / "robots/b.yaml").lexically_normal().string();
+  const std::string robot = (root / "robots/b.yaml").lexically_normal().string();
   EXPECT_EQ(refusal([&] { return loadScenario(file); }),
             file + ":2: robot: " + robot + ": expected a file that can be read");
   write("robots/b.yaml", "nam: b\n");
@@ -408,7 +411,7 @@ TEST_F(ScenarioFolder, NamesTheRobotFileThatIsMissingOrWrong) {
 }
 
 TEST_F(ScenarioFolder, ThatHasNoScenarioIsNamed) {
-  const std::string file = (path_ / "none.yaml").string();
+  const std::string file = (root / "none.yaml").string();
   EXPECT_EQ(refusal([&] { return loadScenario(file); }), file + ": expected a file that can be read");
 }
 

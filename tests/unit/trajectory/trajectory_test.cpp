@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "base/error.hpp"
-#include "robot/kinematics.hpp"
+#include "derivatives.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/robots.hpp"
 
@@ -14,32 +15,29 @@ namespace baton {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr auto kBoth = {Interpolation::kCubic, Interpolation::kQuintic};
+constexpr auto kAll = {Interpolation::kCubic, Interpolation::kQuintic, Interpolation::kTrapezoidal};
 
-Waypoint at(double time_s, double q1, double q2, double q3) { return {time_s, Vector3(q1, q2, q3)}; }
+using test::expectDerivatives;
+using test::referenceAt;
 
-TrajectorySpec reportTq(Interpolation interpolation) {
+JointPath::Waypoint at(double time_s, double q1, double q2, double q3) { return {time_s, Vector3(q1, q2, q3)}; }
+
+JointPath reportTq(Interpolation interpolation) {
   return {
-      .interpolation = interpolation,
+      .timing = {.interpolation = interpolation},
       .waypoints = {at(0, 0, 0, 0), at(1, kPi / 4, 0.2, 0.05), at(2, -kPi / 6, 0.05, 0.2), at(3, kPi / 3, 0.1, 0.1)}};
 }
 
-TrajectorySpec reportTx() {
-  return {.waypoints = {at(0, 0, 0, 0), at(2, kPi / 6, 0.2, 0.1)}, .h_d = (Vector6() << 0, 0, 3, 0, 0, 0).finished()};
-}
-
-Reference evaluate(const Trajectory& trajectory, double time_s) {
-  Reference reference;
-  trajectory.evaluate(time_s, reference);
-  return reference;
+JointPath reportTx(Interpolation interpolation = Interpolation::kQuintic) {
+  return {.timing = {.interpolation = interpolation}, .waypoints = {at(0, 0, 0, 0), at(2, kPi / 6, 0.2, 0.1)}};
 }
 
 TEST(Trajectory, PassesEveryWaypointAtRest) {
-  for (const Interpolation interpolation : kBoth) {
-    const TrajectorySpec spec = reportTq(interpolation);
-    const Trajectory trajectory(test::rppRobot(), spec);
-    for (const Waypoint& waypoint : spec.waypoints) {
-      const Reference reference = evaluate(trajectory, waypoint.time_s);
+  for (const Interpolation interpolation : kAll) {
+    const JointPath path = reportTq(interpolation);
+    const Trajectory trajectory(test::rppRobot(), {.motion = path});
+    for (const auto& waypoint : path.waypoints) {
+      const Reference reference = referenceAt(trajectory, waypoint.time_s);
       EXPECT_EQ(reference.q, waypoint.q);
       EXPECT_TRUE(reference.qd.isZero(0.0));
       EXPECT_TRUE(reference.V_WE.isZero(0.0));
@@ -53,12 +51,12 @@ TEST(Trajectory, PassesEveryWaypointAtRest) {
 }
 
 TEST(Trajectory, HoldsBeforeTheFirstAndAfterTheLastWaypoint) {
-  TrajectorySpec spec = reportTq(Interpolation::kCubic);
-  for (Waypoint& waypoint : spec.waypoints) waypoint.time_s += 1.5;
-  const Trajectory trajectory(test::rppRobot(), spec);
+  JointPath path = reportTq(Interpolation::kCubic);
+  for (auto& waypoint : path.waypoints) waypoint.time_s += 1.5;
+  const Trajectory trajectory(test::rppRobot(), {.motion = path});
   for (const double t : {-1.0, 0.0, 1.499, 4.5, 4.501, 1e9}) {
-    const Reference reference = evaluate(trajectory, t);
-    EXPECT_EQ(reference.q, t < 2.0 ? spec.waypoints.front().q : spec.waypoints.back().q) << t;
+    const Reference reference = referenceAt(trajectory, t);
+    EXPECT_EQ(reference.q, t < 2.0 ? path.waypoints.front().q : path.waypoints.back().q) << t;
     EXPECT_TRUE(reference.qd.isZero(0.0) && reference.qdd.isZero(0.0)) << t;
     EXPECT_TRUE(reference.V_WE.isZero(0.0) && reference.A_WE.isZero(0.0)) << t;
   }
@@ -66,9 +64,9 @@ TEST(Trajectory, HoldsBeforeTheFirstAndAfterTheLastWaypoint) {
 
 TEST(Trajectory, OneWaypointIsASetPoint) {
   const RobotModel robot = test::rppRobot();
-  const Trajectory trajectory(robot, {.waypoints = {at(0, kPi / 3, 0.1, 0.1)}});
+  const Trajectory trajectory(robot, {.motion = JointPath{.waypoints = {at(0, kPi / 3, 0.1, 0.1)}}});
   for (const double t : {-1.0, 0.0, 7.0}) {
-    const Reference reference = evaluate(trajectory, t);
+    const Reference reference = referenceAt(trajectory, t);
     EXPECT_EQ(reference.q, Vector3(kPi / 3, 0.1, 0.1));
     EXPECT_TRUE(reference.qd.isZero(0.0) && reference.qdd.isZero(0.0));
     EXPECT_TRUE(reference.has_task);
@@ -77,76 +75,62 @@ TEST(Trajectory, OneWaypointIsASetPoint) {
 }
 
 TEST(Trajectory, TxEndsAtTheReportsTaskPointAndCarriesTheWrench) {
-  const Trajectory trajectory(test::rppRobot(), reportTx());
+  const Vector6 h_d = (Vector6() << 0, 0, 3, 0, 0, 0).finished();
+  const Trajectory trajectory(test::rppRobot(), {.motion = reportTx(), .h_d = h_d});
   for (const double t : {2.0, 8.0}) {
-    const Reference reference = evaluate(trajectory, t);
+    const Reference reference = referenceAt(trajectory, t);
     EXPECT_NEAR((reference.X_WE.p - Vector3(0.5629, -0.66, 0.725)).norm(), 0.0, 1e-4);
-    EXPECT_EQ(reference.h_d(2), 3.0);
+    EXPECT_EQ(reference.h_d, h_d);
   }
 }
 
 TEST(Trajectory, HalfWayIsTheMiddleAtTheTextbookPeakSpeed) {
-  // Peak speed over mean speed: 3/2 for the cubic, 15/8 for the quintic; both have no acceleration there.
-  for (const Interpolation interpolation : kBoth) {
-    TrajectorySpec spec = reportTx();
-    spec.interpolation = interpolation;
-    const Reference reference = evaluate(Trajectory(test::rppRobot(), spec), 1.0);
-    const JointVector distance = spec.waypoints[1].q;
-    const double peak = interpolation == Interpolation::kCubic ? 1.5 : 1.875;
+  // Peak speed over mean speed: 3/2 for the cubic, 15/8 for the quintic, 1/(1 - 1/4) for the trapezium; none has
+  // acceleration there.
+  const JointVector distance = reportTx().waypoints[1].q;
+  for (const auto& [interpolation, peak] : {std::pair(Interpolation::kCubic, 1.5),
+                                            {Interpolation::kQuintic, 1.875},
+                                            {Interpolation::kTrapezoidal, 4.0 / 3.0}}) {
+    const Trajectory trajectory(test::rppRobot(), {.motion = reportTx(interpolation)});
+    const Reference reference = referenceAt(trajectory, 1.0);
     EXPECT_LT((reference.q - distance / 2).norm(), 1e-15);
     EXPECT_LT((reference.qd - peak * distance / 2).norm(), 1e-15);
     EXPECT_LT(reference.qdd.norm(), 1e-15);
   }
 }
 
-TEST(Trajectory, CubicStartsWithItsLargestAcceleration) {
-  TrajectorySpec spec = reportTx();
-  spec.interpolation = Interpolation::kCubic;
-  const Reference reference = evaluate(Trajectory(test::rppRobot(), spec), 0.0);
-  const JointVector expected = 6.0 / 4.0 * spec.waypoints[1].q;  // 6 distance / duration^2
-  EXPECT_LT((reference.qdd - expected).norm(), 1e-15);
+TEST(Trajectory, StartsWithTheTextbookAcceleration) {
+  const JointVector unit = reportTx().waypoints[1].q / 4.0;  // distance / duration^2
+  for (const auto& [interpolation, factor] : {std::pair(Interpolation::kCubic, 6.0),
+                                              {Interpolation::kQuintic, 0.0},
+                                              {Interpolation::kTrapezoidal, 16.0 / 3.0}}) {
+    const Trajectory trajectory(test::rppRobot(), {.motion = reportTx(interpolation)});
+    EXPECT_LT((referenceAt(trajectory, 0.0).qdd - factor * unit).norm(), 1e-15);
+  }
 }
 
 TEST(Trajectory, DerivativesAreThoseOfThePosition) {
-  // Central differences are off by h^2/6 times the third derivative, here below 1000, plus rounding of 1e-15/h.
-  constexpr double h = 1e-5;
-  constexpr double kTolerance = 2e-8;
-  for (const Interpolation interpolation : kBoth) {
-    const Trajectory trajectory(test::rppRobot(), reportTq(interpolation));
-    for (double t = 0.013; t < 3.2; t += 0.037) {
-      const Reference now = evaluate(trajectory, t), before = evaluate(trajectory, t - h),
-                      after = evaluate(trajectory, t + h);
-      EXPECT_LT(((after.q - before.q) / (2 * h) - now.qd).norm(), kTolerance) << t;
-      EXPECT_LT(((after.qd - before.qd) / (2 * h) - now.qdd).norm(), kTolerance) << t;
-      EXPECT_LT(((after.X_WE.p - before.X_WE.p) / (2 * h) - now.V_WE.head<3>()).norm(), kTolerance) << t;
-      const Vector3 turned = rotationVector(after.X_WE.R * before.X_WE.R.transpose());
-      EXPECT_LT((turned / (2 * h) - now.V_WE.tail<3>()).norm(), kTolerance) << t;
-      EXPECT_LT(((after.V_WE - before.V_WE) / (2 * h) - now.A_WE).norm(), kTolerance) << t;
-    }
+  for (const Interpolation interpolation : kAll) {
+    const Trajectory trajectory(test::rppRobot(), {.motion = reportTq(interpolation)});
+    for (double t = 0.013; t < 3.2; t += 0.037) expectDerivatives(trajectory, t);
   }
 }
 
 TEST(Trajectory, TaskDerivativesHoldForAnyChain) {
-  constexpr double h = 1e-5;
   const RobotModel robot = test::randomChain(7, 3);
   std::mt19937 generator(4);
   const JointVector from = test::randomJointVector(generator, 7, 1.0), to = test::randomJointVector(generator, 7, 1.0);
-  const Trajectory trajectory(robot, {.waypoints = {{0.0, from}, {2.0, to}}});
-  for (double t = 0.1; t < 2.0; t += 0.1) {
-    const Reference now = evaluate(trajectory, t), before = evaluate(trajectory, t - h),
-                    after = evaluate(trajectory, t + h);
-    EXPECT_LT(((after.X_WE.p - before.X_WE.p) / (2 * h) - now.V_WE.head<3>()).norm(), 1e-7) << t;
-    EXPECT_LT(((after.V_WE - before.V_WE) / (2 * h) - now.A_WE).norm(), 1e-7) << t;
-  }
+  const Trajectory trajectory(robot, {.motion = JointPath{.waypoints = {{0.0, from}, {2.0, to}}}});
+  for (double t = 0.1; t < 2.0; t += 0.1) expectDerivatives(trajectory, t, 1e-7);
 }
 
 TEST(Trajectory, IsContinuousAtWaypoints) {
   // Over 2e-9 s the position may move by 2e-9 times the speed, and so on up: the tolerances allow for slopes up to 100.
   constexpr double kGap = 1e-9;
-  for (const Interpolation interpolation : kBoth) {
-    const Trajectory trajectory(test::rppRobot(), reportTq(interpolation));
+  for (const Interpolation interpolation : kAll) {
+    const Trajectory trajectory(test::rppRobot(), {.motion = reportTq(interpolation)});
     for (const double t : {0.0, 1.0, 2.0, 3.0}) {
-      const Reference before = evaluate(trajectory, t - kGap), after = evaluate(trajectory, t + kGap);
+      const Reference before = referenceAt(trajectory, t - kGap), after = referenceAt(trajectory, t + kGap);
       EXPECT_LT((after.q - before.q).norm(), 1e-7) << t;
       EXPECT_LT((after.qd - before.qd).norm(), 1e-7) << t;
       if (interpolation == Interpolation::kQuintic) {
@@ -157,11 +141,11 @@ TEST(Trajectory, IsContinuousAtWaypoints) {
 }
 
 TEST(Trajectory, IsAPureFunctionOfTime) {
-  const Trajectory trajectory(test::rppRobot(), reportTq(Interpolation::kQuintic));
+  const Trajectory trajectory(test::rppRobot(), {.motion = reportTq(Interpolation::kQuintic)});
   Reference reused;
   for (const double t : {2.9, 0.1, 5.0, 1.5, 0.1}) {
     trajectory.evaluate(t, reused);
-    const Reference fresh = evaluate(trajectory, t);
+    const Reference fresh = referenceAt(trajectory, t);
     EXPECT_EQ(reused.q, fresh.q);
     EXPECT_EQ(reused.qdd, fresh.qdd);
     EXPECT_EQ(reused.X_WE.p, fresh.X_WE.p);
@@ -171,7 +155,7 @@ TEST(Trajectory, IsAPureFunctionOfTime) {
 
 TEST(Trajectory, EvaluatesWithoutAllocating) {
   if (!test::AllocationGuard::isActive()) GTEST_SKIP() << "the sanitizer has its own malloc";
-  const Trajectory trajectory(test::rppRobot(), reportTq(Interpolation::kQuintic));
+  const Trajectory trajectory(test::rppRobot(), {.motion = reportTq(Interpolation::kQuintic)});
   Reference reference;
   const test::AllocationGuard guard;
   for (double t = -1.0; t < 5.0; t += 0.01) trajectory.evaluate(t, reference);
@@ -187,24 +171,77 @@ std::string messageOf(const TrajectorySpec& spec) {
   return "accepted";
 }
 
-TEST(Trajectory, RefusesWhatItCannotFollow) {
-  EXPECT_EQ(messageOf({}), "trajectory: expected at least one waypoint, found none");
+/// The message about a motion after a change that makes it wrong.
+template <typename Motion, typename Change>
+std::string messageAfter(Motion motion, const Change& change) {
+  change(motion);
+  return messageOf({.motion = motion});
+}
 
-  TrajectorySpec spec = reportTx();
-  spec.waypoints[1].q = JointVector::Zero(2);
-  EXPECT_EQ(messageOf(spec), "trajectory, waypoint 2: expected 3 joint positions, found 2");
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-  spec = reportTx();
-  spec.waypoints[1].time_s = 0.0;
-  EXPECT_EQ(messageOf(spec), "trajectory, waypoint 2: expected a time after 0 s, found 0 s");
+TEST(Trajectory, RefusesAPathItCannotFollow) {
+  EXPECT_EQ(messageOf({}), "expected at least one waypoint, found none");
+  EXPECT_EQ(messageAfter(reportTx(), [](JointPath& path) { path.waypoints[1].q = JointVector::Zero(2); }),
+            "waypoint 2: expected 3 numbers, one per joint, found 2");
+  EXPECT_EQ(messageAfter(reportTx(), [](JointPath& path) { path.waypoints[1].time_s = 0.0; }),
+            "waypoint 2: expected a time after 0 s, found 0 s");
+  EXPECT_EQ(messageAfter(reportTx(), [](JointPath& path) { path.waypoints[0].time_s = kNaN; }),
+            "waypoint 1: expected a finite time");
+  EXPECT_EQ(messageAfter(reportTx(), [](JointPath& path) { path.waypoints[0].q(1) = kNaN; }),
+            "waypoint 1: expected finite numbers");
+  EXPECT_EQ(messageAfter(reportTx(), [](JointPath& path) { path.timing.ramp = 0.6; }),
+            "expected a ramp above 0 and up to 0.5, found 0.6");
+  EXPECT_EQ(messageAfter(reportTx(), [](JointPath& path) { path.timing.ramp = 0.0; }),
+            "expected a ramp above 0 and up to 0.5, found 0");
+  EXPECT_EQ(messageOf({.motion = reportTx(), .h_d = Vector6::Constant(kNaN)}),
+            "expected a desired wrench of finite numbers");
+}
 
-  spec = reportTx();
-  spec.waypoints[0].q(1) = std::nan("");
-  EXPECT_EQ(messageOf(spec), "trajectory, waypoint 1: expected finite numbers");
+TEST(Trajectory, RefusesATipPathItCannotFollow) {
+  const TipPath path{.waypoints = {{0.0, {}}}};
+  EXPECT_EQ(messageOf({.motion = path}), "accepted");
+  EXPECT_EQ(messageAfter(path, [](TipPath& tip) { tip.waypoints.clear(); }),
+            "expected at least one waypoint, found none");
+  EXPECT_EQ(messageAfter(path, [](TipPath& tip) { tip.waypoints[0].X_WE.p.x() = kNaN; }),
+            "waypoint 1: expected finite numbers");
+  EXPECT_EQ(messageAfter(path, [](TipPath& tip) { tip.waypoints[0].X_WE.R *= 1.1; }),
+            "waypoint 1: expected a rotation matrix");
+  EXPECT_EQ(messageAfter(path, [](TipPath& tip) { tip.waypoints[0].X_WE.R *= -1.0; }),
+            "waypoint 1: expected a rotation matrix");
+}
 
-  spec = reportTx();
-  spec.h_d(0) = std::nan("");
-  EXPECT_EQ(messageOf(spec), "trajectory: expected a desired wrench of finite numbers");
+TEST(Trajectory, RefusesASineItCannotFollow) {
+  const JointVector zero = Vector3::Zero();
+  const JointSine sine{.offset = zero, .amplitude = zero, .frequency_rad_per_s = zero, .phase_rad = zero};
+  EXPECT_EQ(messageOf({.motion = sine}), "accepted");
+  EXPECT_EQ(messageAfter(sine, [](JointSine& bad) { bad.amplitude = JointVector::Zero(1); }),
+            "amplitude: expected 3 numbers, one per joint, found 1");
+  EXPECT_EQ(messageAfter(sine, [](JointSine& bad) { bad.phase_rad(2) = kNaN; }), "phase: expected finite numbers");
+  EXPECT_EQ(messageAfter(sine, [](JointSine& bad) { bad.slow_down_s = 0.0; }),
+            "expected a time to slow down above 0 s, found 0 s");
+  EXPECT_EQ(messageAfter(sine, [](JointSine& bad) { bad.end_s = 0.5; }),
+            "expected an end not before the time to slow down, 1 s, found 0.5 s");
+  EXPECT_EQ(messageAfter(sine, [](JointSine& bad) { bad.end_s = kNaN; }),
+            "expected an end not before the time to slow down, 1 s, found nan s");
+}
+
+TEST(Trajectory, RefusesNoiseItCannotMake) {
+  const HoldNoise good{.hold_s = 0.1, .standard_deviation = Vector3(0.1, 0.02, 0.02)};
+  const auto message_after = [&](const auto& change) {
+    HoldNoise noise = good;
+    change(noise);
+    return messageOf({.motion = reportTx(), .noise = noise});
+  };
+  EXPECT_EQ(messageOf({.motion = reportTx(), .noise = good}), "accepted");
+  EXPECT_EQ(message_after([](HoldNoise& noise) { noise.hold_s = 0.0; }),
+            "noise: expected a hold of at least 1e-9 s, found 0 s");
+  EXPECT_EQ(message_after([](HoldNoise& noise) { noise.standard_deviation(1) = -0.02; }),
+            "noise: expected standard deviations of at least 0");
+  EXPECT_EQ(message_after([](HoldNoise& noise) { noise.standard_deviation.resize(0); }),
+            "noise: expected 3 numbers, one per joint, found 0");
+  EXPECT_EQ(messageOf({.motion = TipPath{.waypoints = {{0.0, {}}}}, .noise = good}),
+            "noise: expected a motion of joints, because noise is added to the joint reference, found one of the tip");
 }
 
 }  // namespace

@@ -1,0 +1,226 @@
+#include "figures_command.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <set>
+#include <thread>
+
+#include "control/nearest_name.hpp"
+#include "report/batch.hpp"
+#include "report/page.hpp"
+#include "report/plot.hpp"
+#include "runtime/command_line.hpp"
+#include "runtime/json.hpp"
+#include "runtime/paths.hpp"
+
+namespace baton {
+namespace {
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct FiguresRequest {
+  std::vector<std::string> only;
+  std::string out = "figures";
+  BatchOptions batch;
+  bool json = false;
+};
+
+/// "27-29" and "30, 31" by each of their numbers.
+std::set<std::string> namesOf(const Figure& figure) {
+  std::set<std::string> names{figure.number};
+  std::vector<int> numbers;
+  bool is_range = false;
+  for (std::size_t i = 0; i < figure.number.size();) {
+    if (std::isdigit(static_cast<unsigned char>(figure.number[i])) == 0) {
+      is_range = is_range || figure.number[i] == '-';
+      ++i;
+      continue;
+    }
+    std::size_t length = 0;
+    numbers.push_back(std::stoi(figure.number.substr(i), &length));
+    i += length;
+  }
+  for (const int number : numbers) names.insert(std::to_string(number));
+  if (is_range && numbers.size() == 2) {
+    for (int number = numbers[0]; number <= numbers[1]; ++number) names.insert(std::to_string(number));
+  }
+  return names;
+}
+
+std::vector<Figure> chosen(const std::vector<Figure>& all, const std::vector<std::string>& only) {
+  if (only.empty()) return all;
+  std::vector<std::string> known;
+  std::vector<Figure> figures;
+  for (const Figure& figure : all) {
+    const std::set<std::string> names = namesOf(figure);
+    known.insert(known.end(), names.begin(), names.end());
+    if (std::any_of(only.begin(), only.end(), [&](const auto& name) { return names.contains(name); })) {
+      figures.push_back(figure);
+    }
+  }
+  for (const std::string& name : only) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw UsageError(unknownName("figure", name, known));
+    }
+  }
+  return figures;
+}
+
+std::vector<fs::path> scenariosOf(const std::vector<Figure>& figures) {
+  std::vector<fs::path> files;
+  for (const Figure& figure : figures) {
+    for (const FigureRun& run : figure.runs) {
+      const fs::path file = findScenario("report/" + run.scenario);
+      if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+    }
+  }
+  return files;
+}
+
+FigureResult resultOf(const Figure& figure, const std::map<std::string, BatchRun>& runs, const fs::path& out) {
+  FigureResult result{.figure = figure, .drawings = {}, .checks = {}, .failure = {}};
+  std::vector<Trace> traces;
+  traces.reserve(figure.runs.size());  // the drawings point into it
+  std::vector<LabelledRun> labelled;
+  for (const FigureRun& run : figure.runs) {
+    const BatchRun& done = runs.at(run.scenario);
+    if (!done.failure.empty()) {
+      result.failure = run.scenario + ": " + done.failure;
+      return result;
+    }
+    traces.push_back(readTrace(done.recording));
+    labelled.push_back({figure.runs.size() > 1 ? run.label : "", &traces.back()});
+  }
+  for (const CheckRequest& request : figure.checks) {
+    const std::string& label = figure.runs[static_cast<std::size_t>(request.run)].label;
+    for (Check& check : runCheck(request, traces)) {
+      if (figure.runs.size() > 1 && !label.empty() && !request.other) check.what = label + ": " + check.what;
+      result.checks.push_back(std::move(check));
+    }
+  }
+  for (const std::string& kind : figure.plots) {
+    const std::string stem = figure.runs.front().scenario + "_" + kind;
+    draw(out / stem, figure.title, kind, labelled);
+    result.drawings.push_back(stem);
+  }
+  return result;
+}
+
+/// What goes wrong with one figure is told in its place: the others are still to be seen.
+FigureResult resultOrFailure(const Figure& figure, const std::map<std::string, BatchRun>& runs, const fs::path& out) {
+  try {
+    return resultOf(figure, runs, out);
+  } catch (const std::exception& error) {
+    return {.figure = figure, .drawings = {}, .checks = {}, .failure = error.what()};
+  }
+}
+
+Json toJson(const FigureResult& result) {
+  Json checks = Json::array();
+  for (const Check& check : result.checks) {
+    checks.push_back({{"what", check.what},
+                      {"unit", check.unit},
+                      {"predicted", check.predicted},
+                      {"measured", check.measured},
+                      {"tolerance", check.tolerance},
+                      {"relative", check.is_relative},
+                      {"passes", check.passes()}});
+  }
+  return {{"figure", result.figure.number}, {"title", result.figure.title}, {"claim", toString(result.verdict())},
+          {"agrees", result.agrees()},      {"failure", result.failure},    {"checks", checks}};
+}
+
+void print(const FigureResult& result) {
+  std::printf("%-10s %-58s claim %-14s %s\n", result.figure.number.c_str(), result.figure.title.c_str(),
+              toString(result.verdict()),
+              !result.failure.empty() ? "NOT RUN"
+              : result.agrees()       ? "agrees with theory"
+                                      : "DIFFERS FROM THEORY");
+  if (!result.failure.empty()) std::printf("  %s\n", result.failure.c_str());
+  for (const Check& check : result.checks) {
+    std::printf("  %s %-62s predicted %14.8g  measured %14.8g %s\n", check.passes() ? " " : "!", check.what.c_str(),
+                check.predicted, check.measured, check.unit.c_str());
+  }
+}
+
+ExitCode figures(FiguresRequest request) {
+  const auto begin = std::chrono::steady_clock::now();
+  const FigureList list = readFigureList(dataFolder() / "figures/report.yaml");
+  const std::vector<Figure> wanted = chosen(list.figures, request.only);
+  const fs::path out = fs::absolute(request.out);
+  request.batch.folder = out / "recordings";
+  expectGnuplot();
+  std::map<std::string, BatchRun> runs;
+  PageFacts facts{.build = "Baton " BATON_VERSION " (" BATON_COMPILER ", " BATON_FLAGS ")"};
+  for (BatchRun& run : runBatch(scenariosOf(wanted), request.batch)) {
+    facts.reused += run.was_reused ? 1 : 0;
+    ++facts.runs;
+    const std::string name = run.scenario;
+    runs.emplace(name, std::move(run));
+  }
+  std::vector<FigureResult> results;
+  const bool is_terminal = isatty(STDERR_FILENO) != 0;
+  for (const Figure& figure : wanted) {
+    if (is_terminal) std::fprintf(stderr, "\r\033[Kdrawing figure %s", figure.number.c_str());
+    results.push_back(resultOrFailure(figure, runs, out));
+  }
+  if (is_terminal) std::fprintf(stderr, "\r\033[K");
+  facts.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  writePage(out, results, list.errata, facts);
+
+  Json json = Json::array();
+  for (const FigureResult& result : results) {
+    if (request.json) {
+      json.push_back(toJson(result));
+    } else {
+      print(result);
+    }
+  }
+  const std::string page = (out / "index.html").string();
+  const auto agreeing = std::count_if(results.begin(), results.end(), [](const auto& one) { return one.agrees(); });
+  if (request.json) {
+    std::cout << toText(Json{{"page", page},
+                             {"elapsed_s", facts.elapsed_s},
+                             {"runs", facts.runs},
+                             {"reused", facts.reused},
+                             {"figures", json}})
+              << '\n';
+  } else {
+    std::printf("%zu of %zu figures agree with theory; %zu runs, %zu reused, %.0f s\n%s\n",
+                static_cast<std::size_t>(agreeing), results.size(), facts.runs, facts.reused, facts.elapsed_s,
+                page.c_str());
+  }
+  return static_cast<std::size_t>(agreeing) == results.size() ? ExitCode::kOk : ExitCode::kFailed;
+}
+
+}  // namespace
+
+void addFiguresCommand(CLI::App& app, ExitCode& exit_code) {
+  const auto request = std::make_shared<FiguresRequest>();
+  request->batch.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  CLI::App* command =
+      app.add_subcommand("figures", "run the report's scenarios, draw its figures, hold them against theory on a page");
+  command->footer(
+      "Recordings stay in DIR/recordings and are used again while scenario, robot and build are the same.\n"
+      "Exit codes: 0 every figure agrees with theory, 1 one does not or could not be run.");
+  command->add_option("--only", request->only, "only these figures: 9,10")->delimiter(',')->allow_extra_args(false);
+  command->add_option("--out", request->out, "folder for the page, the drawings and the recordings")
+      ->capture_default_str();
+  command->add_option("--jobs", request->batch.jobs, "runs at the same time")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command->add_flag("--fresh", request->batch.fresh, "run everything again");
+  addDomain(*command, request->batch.domain)->envname("BATON_DOMAIN");
+  addTransport(*command, request->batch.transport);
+  command->add_flag("--json", request->json, "print JSON");
+  command->callback([=, &exit_code] { exit_code = figures(*request); });
+}
+
+}  // namespace baton

@@ -1,0 +1,79 @@
+#include "figure_list.hpp"
+
+#include <algorithm>
+
+#include "control/nearest_name.hpp"
+#include "plot.hpp"
+#include "runtime/yaml.hpp"
+
+namespace baton {
+namespace {
+
+constexpr std::size_t kMaxText = 2000;  // of a paragraph
+constexpr std::size_t kMaxEntries = 200;
+
+/// A name out of a list that somebody else keeps.
+std::string known(const YamlNode& node, const char* kind, const std::vector<std::string>& names) {
+  std::string name = node.text();
+  if (std::find(names.begin(), names.end(), name) == names.end()) node.fail(unknownName(kind, name, names));
+  return name;
+}
+
+FigureRun readRun(const YamlNode& node) {
+  const YamlMap run = node.map({"scenario", "label"});
+  FigureRun read{.scenario = run["scenario"].name(), .label = {}};
+  if (const auto label = run.find("label")) read.label = label->text();
+  return read;
+}
+
+CheckRequest readCheck(const YamlNode& node, std::size_t runs) {
+  const YamlMap check = node.map({"name", "run", "other", "tolerance"});
+  const auto last = static_cast<std::int64_t>(runs) - 1;
+  CheckRequest read{.name = known(check["name"], "check", checkNames()), .other = {}, .tolerance = {}};
+  read.run = static_cast<int>(check.integerOr("run", 0, last, 0));
+  if (const auto other = check.find("other")) read.other = static_cast<int>(other->integer(0, last));
+  if (const auto tolerance = check.find("tolerance"))
+    read.tolerance = tolerance->number({.minimum = 0.0, .unit = {}, .open = true});
+  return read;
+}
+
+Figure readFigure(const YamlNode& node) {
+  const YamlMap map =
+      node.map({"figure", "title", "claim", "theory", "finding", "claim_holds", "runs", "plots", "checks"});
+  Figure figure;
+  figure.number = map["figure"].text();
+  figure.title = map["title"].text();
+  figure.claim = map["claim"].text(kMaxText);
+  figure.theory = map["theory"].text(kMaxText);
+  figure.finding = map["finding"].text(kMaxText);
+  figure.verdict = map["claim_holds"].oneOf<ClaimVerdict>({{"true", ClaimVerdict::kHolds},
+                                                           {"partly", ClaimVerdict::kPartly},
+                                                           {"false", ClaimVerdict::kWrong},
+                                                           {"none", ClaimVerdict::kNone}});
+  for (const YamlNode& run : map["runs"].list(1, 8)) figure.runs.push_back(readRun(run));
+  for (const YamlNode& plot : map["plots"].list(1, 8)) figure.plots.push_back(known(plot, "plot", plotKinds()));
+  for (const YamlNode& check : map["checks"].list(1, kMaxEntries)) {
+    figure.checks.push_back(readCheck(check, figure.runs.size()));
+  }
+  return figure;
+}
+
+Erratum readErratum(const YamlNode& node) {
+  const YamlMap map = node.map({"where", "printed", "right", "evidence"});
+  return {.where = map["where"].text(kMaxText),
+          .printed = map["printed"].text(kMaxText),
+          .right = map["right"].text(kMaxText),
+          .evidence = map["evidence"].text(kMaxText)};
+}
+
+}  // namespace
+
+FigureList readFigureList(const std::filesystem::path& file) {
+  const YamlMap map = YamlNode::parse(file.string(), readYamlFile(file.string())).map({"figures", "errata"});
+  FigureList list;
+  for (const YamlNode& figure : map["figures"].list(1, kMaxEntries)) list.figures.push_back(readFigure(figure));
+  for (const YamlNode& erratum : map["errata"].list(0, kMaxEntries)) list.errata.push_back(readErratum(erratum));
+  return list;
+}
+
+}  // namespace baton

@@ -1,0 +1,161 @@
+#include "metrics.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace baton {
+namespace {
+
+constexpr double kSettled = 0.02;  // part of the stroke
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// The integral over the run by trapezoids, of what f gives at each step.
+template <class F>
+double integral(Eigen::Index steps, double dt_s, const F& f) {
+  double sum = 0.0;
+  for (Eigen::Index k = 0; k + 1 < steps; ++k) sum += 0.5 * (f(k) + f(k + 1));
+  return sum * dt_s;
+}
+
+using Row = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
+
+/// @param desired, actual  one signal each.
+ErrorMetrics errorMetrics(std::string name, std::string unit, const Row& desired, const Row& actual, double dt_s) {
+  ErrorMetrics m{.name = std::move(name), .unit = std::move(unit)};
+  const Eigen::Index steps = actual.size();
+  const auto error = [&](Eigen::Index k) { return desired(k) - actual(k); };
+  const double duration_s = static_cast<double>(steps - 1) * dt_s;
+  m.final = error(steps - 1);
+  for (Eigen::Index k = 0; k < steps; ++k) m.peak = std::max(m.peak, std::abs(error(k)));
+  m.iae = integral(steps, dt_s, [&](Eigen::Index k) { return std::abs(error(k)); });
+  m.rms = duration_s > 0.0
+              ? std::sqrt(integral(steps, dt_s, [&](Eigen::Index k) { return error(k) * error(k); }) / duration_s)
+              : std::abs(m.final);
+
+  const double goal = desired(steps - 1);
+  const double stroke = goal - actual(0);
+  m.overshoot = m.settling_s = kNan;
+  const bool is_set_point = (desired.array() == goal).all();
+  if (!is_set_point || !(std::abs(stroke) > 1e-9)) return m;
+  m.overshoot = 0.0;
+  Eigen::Index outside = -1;  // the last step that is not settled
+  for (Eigen::Index k = 0; k < steps; ++k) {
+    m.overshoot = std::max(m.overshoot, (actual(k) - goal) / stroke);
+    if (!(std::abs(actual(k) - goal) <= kSettled * std::abs(stroke))) outside = k;
+  }
+  if (outside + 1 < steps) m.settling_s = static_cast<double>(outside + 1) * dt_s;
+  return m;
+}
+
+nlohmann::ordered_json orNull(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json toJson(const ErrorMetrics& m) {
+  return {{"name", m.name},
+          {"unit", m.unit},
+          {"final", orNull(m.final)},
+          {"rms", orNull(m.rms)},
+          {"peak", orNull(m.peak)},
+          {"iae", orNull(m.iae)},
+          {"overshoot", orNull(m.overshoot)},
+          {"settling_s", orNull(m.settling_s)}};
+}
+
+std::string numberText(double value, const char* format) {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
+}
+
+void addRows(const std::vector<ErrorMetrics>& rows, const char* title, std::string& text) {
+  if (rows.empty()) return;
+  text += fmt::format("{:<14}{:>13}{:>13}{:>13}{:>13}{:>11}{:>13}\n", title, "final", "rms", "peak", "iae [.. s]",
+                      "overshoot", "settled [s]");
+  for (const ErrorMetrics& m : rows) {
+    text += fmt::format("  {:<12}{:>13}{:>13}{:>13}{:>13}{:>11}{:>13}\n", m.name + " [" + m.unit + "]",
+                        numberText(m.final, "{:.4e}"), numberText(m.rms, "{:.4e}"), numberText(m.peak, "{:.4e}"),
+                        numberText(m.iae, "{:.4e}"),
+                        std::isfinite(m.overshoot) ? fmt::format("{:.1f} %", 100.0 * m.overshoot) : "-",
+                        numberText(m.settling_s, "{:.4f}"));
+  }
+}
+
+}  // namespace
+
+Metrics metricsOf(const Trace& trace) {
+  const RobotModel& robot = trace.scenario.robot;
+  const double dt_s = trace.scenario.stepSeconds();
+  Metrics m;
+  m.steps = static_cast<std::uint64_t>(trace.last());
+  m.duration_s = trace.time(trace.last());
+  m.missed_steps = trace.missed_steps;
+  const bool has_joints = !std::isnan(trace.q_d(0, trace.last()));
+  for (int i = 0; i < robot.size(); ++i) {
+    const Joint& joint = robot.joints[static_cast<std::size_t>(i)];
+    const bool turns = joint.kind == JointKind::kRevolute;
+    if (has_joints) {
+      m.joints.push_back(
+          errorMetrics("q" + std::to_string(i + 1), turns ? "rad" : "m", trace.q_d.row(i), trace.q.row(i), dt_s));
+    }
+    EffortMetrics effort{.name = "tau" + std::to_string(i + 1), .unit = turns ? "N m" : "N"};
+    for (Eigen::Index k = 1; k < trace.steps(); ++k) {  // at step 0 nothing has been applied yet
+      effort.peak = std::max(effort.peak, std::abs(trace.tau(i, k)));
+      if (std::abs(trace.tau(i, k)) >= joint.effort_limit) effort.saturated_s += dt_s;
+    }
+    m.efforts.push_back(effort);
+  }
+  if (!std::isnan(trace.p_WE_d(0, trace.last()))) {
+    for (int i = 0; i < 3; ++i) {
+      m.task.push_back(errorMetrics(std::string(1, "xyz"[i]), "m", trace.p_WE_d.row(i), trace.p_WE.row(i), dt_s));
+    }
+    // An angle is never negative: as an error signal it has size and no stroke.
+    const Eigen::RowVectorXd angle = trace.orientation.colwise().norm();
+    const Eigen::RowVectorXd none = Eigen::RowVectorXd::Zero(angle.size());
+    ErrorMetrics turned = errorMetrics("angle", "rad", angle, none, dt_s);
+    turned.overshoot = turned.settling_s = kNan;
+    m.task.push_back(std::move(turned));
+  }
+  if (trace.scenario.hasEnvironment()) {
+    m.final_force_N = trace.h_e.col(trace.last()).head<3>();
+    for (int i = 0; i < 3; ++i) {
+      Eigen::Index at = 0;
+      trace.h_e.row(i).cwiseAbs().maxCoeff(&at);
+      m.peak_force_N[i] = trace.h_e(i, at);
+    }
+  }
+  return m;
+}
+
+nlohmann::ordered_json toJson(const Metrics& m) {
+  nlohmann::ordered_json json{{"steps", m.steps}, {"duration_s", m.duration_s}, {"missed_steps", m.missed_steps}};
+  json["joints"] = nlohmann::ordered_json::array();
+  for (const ErrorMetrics& joint : m.joints) json["joints"].push_back(toJson(joint));
+  json["task"] = nlohmann::ordered_json::array();
+  for (const ErrorMetrics& axis : m.task) json["task"].push_back(toJson(axis));
+  json["efforts"] = nlohmann::ordered_json::array();
+  for (const EffortMetrics& effort : m.efforts) {
+    json["efforts"].push_back(
+        {{"name", effort.name}, {"unit", effort.unit}, {"peak", effort.peak}, {"saturated_s", effort.saturated_s}});
+  }
+  json["force_N"] = {{"final", {m.final_force_N[0], m.final_force_N[1], m.final_force_N[2]}},
+                     {"peak", {m.peak_force_N[0], m.peak_force_N[1], m.peak_force_N[2]}}};
+  return json;
+}
+
+std::string toText(const Metrics& m) {
+  std::string text = fmt::format("{} steps, {:.4f} s, {} missed\n", m.steps, m.duration_s, m.missed_steps);
+  addRows(m.joints, "joints", text);
+  addRows(m.task, "tip", text);
+  text += fmt::format("{:<14}{:>13}{:>15}\n", "efforts", "peak", "saturated [s]");
+  for (const EffortMetrics& effort : m.efforts) {
+    text += fmt::format("  {:<12}{:>13.4e}{:>15.4f}\n", effort.name + " [" + effort.unit + "]", effort.peak,
+                        effort.saturated_s);
+  }
+  text += fmt::format("force [N]     final {:.6f} {:.6f} {:.6f}   peak {:.6f} {:.6f} {:.6f}\n", m.final_force_N[0],
+                      m.final_force_N[1], m.final_force_N[2], m.peak_force_N[0], m.peak_force_N[1], m.peak_force_N[2]);
+  return text;
+}
+
+}  // namespace baton

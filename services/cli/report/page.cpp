@@ -1,0 +1,186 @@
+#include "page.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "base/error.hpp"
+
+namespace baton {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      case '"': result += "&quot;"; break;
+      default: result += c;
+    }
+  }
+  return result;
+}
+
+constexpr const char* kHead = R"(<!doctype html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>The report's figures, run again</title>
+<style>
+  body { font: 15px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+  h2 { margin: 2.5rem 0 0.3rem; border-top: 1px solid #ddd; padding-top: 1.2rem; font-size: 1.15rem; }
+  table { border-collapse: collapse; margin: 0.6rem 0; font-size: 0.92rem; }
+  th, td { text-align: left; padding: 0.2rem 0.9rem 0.2rem 0; vertical-align: top; border-bottom: 1px solid #eee; }
+  td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; font-family: ui-monospace, monospace; }
+  dl { display: grid; grid-template-columns: 9rem 1fr; gap: 0.2rem 0.8rem; margin: 0.4rem 0; }
+  dt { color: #666; } dd { margin: 0; }
+  img { max-width: 100%; height: auto; }
+  .holds, .agrees { color: #1d7a3c; } .partly { color: #9a6a00; } .wrong, .differs { color: #b3261e; }
+  .tag { font-weight: 600; white-space: nowrap; }
+  @media (prefers-color-scheme: dark) {
+    body { background: #16181b; color: #ddd; } img { background: #fff; border-radius: 4px; }
+    h2 { border-color: #333; } th, td { border-color: #2a2d31; } dt { color: #999; } a { color: #8ab4f8; }
+    .holds, .agrees { color: #6fce8b; } .partly { color: #e0b04d; } .wrong, .differs { color: #ff8a80; }
+  }
+</style>
+)";
+
+const char* className(ClaimVerdict verdict) {
+  switch (verdict) {
+    case ClaimVerdict::kHolds: return "holds";
+    case ClaimVerdict::kPartly: return "partly";
+    case ClaimVerdict::kWrong: return "wrong";
+    case ClaimVerdict::kNone: return "none";
+    case ClaimVerdict::kNotEstablished: return "differs";
+  }
+  return "";
+}
+
+std::string anchorOf(const Figure& figure) {
+  std::string anchor = "figure-";
+  for (const char c : figure.number) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      anchor += c;
+    else if (anchor.back() != '-')
+      anchor += '-';
+  }
+  return anchor;
+}
+
+std::string agreement(const FigureResult& result) {
+  return result.agrees() ? "<span class='tag agrees'>agrees with theory</span>"
+                         : "<span class='tag differs'>differs from theory</span>";
+}
+
+std::string verdictTag(const FigureResult& result) {
+  return fmt::format("<span class='tag {}'>{}</span>", className(result.verdict()), toString(result.verdict()));
+}
+
+void writeSummary(std::ofstream& page, const std::vector<FigureResult>& results) {
+  page << "<table><tr><th>figure<th><th>the report's claim<th>our runs\n";
+  for (const FigureResult& result : results) {
+    page << fmt::format("<tr><td><a href='#{}'>{}</a><td>{}<td>{}<td>{}\n", anchorOf(result.figure),
+                        escaped(result.figure.number), escaped(result.figure.title), verdictTag(result),
+                        agreement(result));
+  }
+  page << "</table>\n";
+}
+
+void writeChecks(std::ofstream& page, const std::vector<Check>& checks) {
+  if (checks.empty()) return;
+  page << "<table><tr><th>quantity<th class=number>predicted<th class=number>measured<th class=number>difference"
+          "<th class=number>allowed<th>\n";
+  for (const Check& check : checks) {
+    const double difference = check.measured - check.predicted;
+    const double shown = check.is_relative ? difference / check.predicted : difference;
+    page << fmt::format(
+        "<tr><td>{}{}<td class=number>{:.9g}<td class=number>{:.9g}<td class=number>{:.2g}{}<td "
+        "class=number>{:.2g}{}<td>{}\n",
+        escaped(check.what), check.unit.empty() ? "" : " [" + escaped(check.unit) + "]", check.predicted,
+        check.measured, shown, check.is_relative ? " rel" : "", check.tolerance, check.is_relative ? " rel" : "",
+        check.passes() ? "<span class=agrees>ok</span>" : "<span class='tag differs'>off</span>");
+  }
+  page << "</table>\n";
+}
+
+void writeFigure(std::ofstream& page, const FigureResult& result) {
+  const Figure& figure = result.figure;
+  page << fmt::format("<h2 id='{}'>{}{}: {}</h2>\n", anchorOf(figure),
+                      std::isdigit(static_cast<unsigned char>(figure.number.front())) != 0 ? "Figure " : "",
+                      escaped(figure.number), escaped(figure.title));
+  page << "<dl>\n";
+  page << fmt::format("<dt>the report says<dd>{}\n", escaped(figure.claim));
+  page << fmt::format("<dt>theory predicts<dd>{}\n", escaped(figure.theory));
+  page << fmt::format("<dt>finding<dd>{} {}\n", verdictTag(result),
+                      result.agrees() ? escaped(figure.finding) : "Our runs do not agree with theory here.");
+  std::string runs;
+  for (const FigureRun& run : figure.runs) {
+    runs += fmt::format("{}<code>deploy/baton run report/{}</code>", runs.empty() ? "" : "<br>", escaped(run.scenario));
+  }
+  page << fmt::format("<dt>{}<dd>{}\n</dl>\n", figure.runs.size() == 1 ? "scenario" : "scenarios", runs);
+  if (!result.failure.empty()) {
+    page << fmt::format("<p class='tag differs'>not run to its end</p><pre>{}</pre>\n", escaped(result.failure));
+    return;
+  }
+  page << "<p>" << agreement(result) << "</p>\n";
+  writeChecks(page, result.checks);
+  for (const std::string& drawing : result.drawings) {
+    page << fmt::format("<p><a href='{0}.png'><img src='{0}.svg' alt='{1}' loading=lazy></a></p>\n", escaped(drawing),
+                        escaped(figure.title));
+  }
+}
+
+void writeErrata(std::ofstream& page, const std::vector<Erratum>& errata) {
+  page << "<h2 id='errata'>What the report has wrong</h2>\n"
+          "<table><tr><th>where<th>printed<th>right<th>evidence\n";
+  for (const Erratum& erratum : errata) {
+    page << fmt::format("<tr><td>{}<td>{}<td>{}<td>{}\n", escaped(erratum.where), escaped(erratum.printed),
+                        escaped(erratum.right), escaped(erratum.evidence));
+  }
+  page << "</table>\n";
+}
+
+}  // namespace
+
+bool FigureResult::agrees() const {
+  return failure.empty() && !checks.empty() &&
+         std::all_of(checks.begin(), checks.end(), [](const Check& check) { return check.passes(); });
+}
+
+const char* toString(ClaimVerdict verdict) {
+  switch (verdict) {
+    case ClaimVerdict::kHolds: return "holds";
+    case ClaimVerdict::kPartly: return "holds in part";
+    case ClaimVerdict::kWrong: return "is wrong";
+    case ClaimVerdict::kNone: return "no claim";
+    case ClaimVerdict::kNotEstablished: return "not established";
+  }
+  return "?";
+}
+
+void writePage(const std::filesystem::path& folder, const std::vector<FigureResult>& results,
+               const std::vector<Erratum>& errata, const PageFacts& facts) {
+  const std::filesystem::path file = folder / "index.html";
+  std::ofstream page(file, std::ios::binary);
+  page << kHead;
+  page << "<h1>The report's figures, run again</h1>\n"
+          "<p>Each figure below comes from a recording of the distributed system: plant, wall, trajectory and "
+          "controller "
+          "as processes of their own on DDS, in lockstep. <em>The report's claim</em> says whether what the report "
+          "concludes from its figure holds; <em>our runs</em> says whether what was measured agrees with what theory "
+          "predicts, number by number.</p>\n";
+  page << fmt::format("<p>{} runs, {} of them from an earlier time; {:.0f} s. Made by {}.</p>\n", facts.runs,
+                      facts.reused, facts.elapsed_s, escaped(facts.build));
+  writeSummary(page, results);
+  for (const FigureResult& result : results) writeFigure(page, result);
+  writeErrata(page, errata);
+  page << "</html>\n";
+  page.close();
+  if (!page) throw UnavailableError("cannot write " + file.string() + ": expected space and the right to write there");
+}
+
+}  // namespace baton

@@ -1,0 +1,270 @@
+#include "plot.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <optional>
+
+#include "base/error.hpp"
+#include "control/nearest_name.hpp"
+#include "theory.hpp"
+
+namespace baton {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr Eigen::Index kMaxPoints = 1500;  // of a curve: more than a drawing has pixels
+
+struct Curve {
+  std::string label;
+  const Trace* trace = nullptr;
+  Eigen::RowVectorXd y;
+  std::size_t colour = 0;
+  bool is_desired = false;
+};
+
+struct Panel {
+  std::string y_label;
+  std::vector<Curve> curves;
+};
+
+std::string named(const std::string& run, const std::string& what) { return run.empty() ? what : run + ", " + what; }
+
+/// One panel a row of `actual`, with the same row of `desired` when there is one.
+std::vector<Panel> panelsOf(const std::vector<LabelledRun>& runs, const std::vector<std::string>& labels,
+                            Eigen::MatrixXd Trace::*actual, Eigen::MatrixXd Trace::*desired) {
+  std::vector<Panel> panels;
+  for (std::size_t row = 0; row < labels.size(); ++row) {
+    Panel panel{.y_label = labels[row], .curves = {}};
+    for (std::size_t run = 0; run < runs.size(); ++run) {
+      const Trace& trace = *runs[run].trace;
+      const auto i = static_cast<Eigen::Index>(row);
+      const bool is_wanted = desired != nullptr && (trace.*desired).row(i).array().isFinite().any();
+      // The same reference is drawn once.
+      const bool is_new = run == 0 || !is_wanted || (trace.*desired).cols() != (runs[0].trace->*desired).cols() ||
+                          (trace.*desired).row(i) != (runs[0].trace->*desired).row(i);
+      panel.curves.push_back(
+          {runs[run].label.empty() ? "actual" : runs[run].label, &trace, (trace.*actual).row(i), run, false});
+      if (is_wanted && is_new) {
+        panel.curves.push_back({runs.size() == 1 || run == 0 ? "desired" : named(runs[run].label, "desired"), &trace,
+                                (trace.*desired).row(i), run, true});
+      }
+    }
+    panels.push_back(std::move(panel));
+  }
+  return panels;
+}
+
+std::vector<Panel> errorPanels(const std::vector<LabelledRun>& runs, const std::vector<std::string>& labels,
+                               Eigen::MatrixXd Trace::*actual, Eigen::MatrixXd Trace::*desired) {
+  std::vector<Panel> panels;
+  for (std::size_t row = 0; row < labels.size(); ++row) {
+    Panel panel{.y_label = labels[row], .curves = {}};
+    for (std::size_t run = 0; run < runs.size(); ++run) {
+      const Trace& trace = *runs[run].trace;
+      const auto i = static_cast<Eigen::Index>(row);
+      panel.curves.push_back({runs[run].label.empty() ? "desired - actual" : runs[run].label, &trace,
+                              (trace.*desired).row(i) - (trace.*actual).row(i), run, false});
+    }
+    panels.push_back(std::move(panel));
+  }
+  return panels;
+}
+
+/// Where force control wants the tip, x_F, which is nobody's message, and where it is.
+std::vector<Panel> forceReferencePanels(const std::vector<LabelledRun>& runs) {
+  std::vector<Panel> panels;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    Panel panel{.y_label = std::string(1, "xyz"[axis]) + " [m]", .curves = {}};
+    for (std::size_t run = 0; run < runs.size(); ++run) {
+      const Trace& trace = *runs[run].trace;
+      const std::string& label = runs[run].label;
+      panel.curves.push_back({named(label, "x_e"), &trace, trace.p_WE.row(axis), run, false});
+      panel.curves.push_back({named(label, "x_F"), &trace, forceReference(trace).row(axis), run, true});
+    }
+    panels.push_back(std::move(panel));
+  }
+  return panels;
+}
+
+std::vector<std::string> jointLabels(const Trace& trace, const std::string& symbol, const std::string& turning,
+                                     const std::string& sliding) {
+  std::vector<std::string> labels;
+  for (std::size_t i = 0; i < trace.scenario.robot.joints.size(); ++i) {
+    const bool turns = trace.scenario.robot.joints[i].kind == JointKind::kRevolute;
+    labels.push_back(fmt::format("{}_{{{}}} [{}]", symbol, i + 1, turns ? turning : sliding));
+  }
+  return labels;
+}
+
+std::vector<Panel> panels(const std::string& kind, const std::vector<LabelledRun>& runs) {
+  const Trace& first = *runs.front().trace;
+  if (kind == "joints") return panelsOf(runs, jointLabels(first, "q", "rad", "m"), &Trace::q, &Trace::q_d);
+  if (kind == "joint_errors") return errorPanels(runs, jointLabels(first, "e", "rad", "m"), &Trace::q, &Trace::q_d);
+  if (kind == "efforts") return panelsOf(runs, jointLabels(first, "\u03c4", "N m", "N"), &Trace::tau, nullptr);
+  if (kind == "tip") return panelsOf(runs, {"x [m]", "y [m]", "z [m]"}, &Trace::p_WE, &Trace::p_WE_d);
+  if (kind == "tip_errors") return errorPanels(runs, {"e_x [m]", "e_y [m]", "e_z [m]"}, &Trace::p_WE, &Trace::p_WE_d);
+  if (kind == "angles") {
+    return panelsOf(runs, {"\u03c6 [rad]", "\u03d1 [rad]", "\u03c8 [rad]"}, &Trace::zyz, &Trace::zyz_d);
+  }
+  if (kind == "force_reference") return forceReferencePanels(runs);
+  if (kind == "force") return panelsOf(runs, {"f_x [N]", "f_y [N]", "f_z [N]"}, &Trace::h_e, &Trace::h_d);
+  throw UsageError(unknownName("plot", kind, plotKinds()));
+}
+
+/// Steps to draw: all of a short curve; of a long one the first, the last and, of each stretch, the lowest and the
+/// highest, so that no peak is lost.
+std::vector<Eigen::Index> drawnSteps(const Eigen::RowVectorXd& y) {
+  std::vector<Eigen::Index> drawn;
+  const Eigen::Index steps = y.size();
+  const Eigen::Index stretches = std::min(steps, kMaxPoints / 2);
+  drawn.reserve(static_cast<std::size_t>(2 * stretches + 2));
+  drawn.push_back(0);
+  for (Eigen::Index i = 0; i < stretches; ++i) {
+    const Eigen::Index from = i * steps / stretches;
+    const Eigen::Index to = (i + 1) * steps / stretches;
+    Eigen::Index low = from;
+    Eigen::Index high = from;
+    for (Eigen::Index k = from; k < to; ++k) {
+      if (y(k) < y(low)) low = k;
+      if (y(k) > y(high)) high = k;
+    }
+    drawn.push_back(std::min(low, high));
+    drawn.push_back(std::max(low, high));
+  }
+  drawn.push_back(steps - 1);
+  drawn.erase(std::unique(drawn.begin(), drawn.end()), drawn.end());
+  return drawn;
+}
+
+/// When the tip first touches something [s]; nothing when it never does.
+std::optional<double> firstContact(const Trace& trace) {
+  for (Eigen::Index k = 0; k < trace.steps(); ++k) {
+    if (trace.h_e.col(k).head<3>().squaredNorm() > 0.0) return trace.time(k);
+  }
+  return std::nullopt;
+}
+
+const char* const kColours[] = {"#1f6fb4", "#c8452c", "#2c8c4a", "#8b5ab5", "#b5852a"};
+constexpr const char* kDesiredColour = "#555555";
+
+/// In single quotes gnuplot takes text as it is; in double quotes it would run what stands in backquotes.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') result += c;
+    result += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
+  }
+  return result + "'";
+}
+
+void writeMarks(std::ofstream& script, const std::vector<LabelledRun>& runs) {
+  int tag = 1;
+  const auto mark = [&](double time_s, const std::string& text, const char* colour) {
+    script << fmt::format("set arrow {} from {},graph 0 to {},graph 1 nohead lc rgb '{}' dt 3\n", tag, time_s, time_s,
+                          colour);
+    script << fmt::format(
+        "set label {} {} at {},graph 0.04 rotate left offset -0.4,0 tc rgb '{}' font ',9' noenhanced\n", tag,
+        quoted(text), time_s, colour);
+    ++tag;
+  };
+  for (const LabelledRun& run : runs) {
+    for (const msg::SwapOutcome& swap : run.trace->swaps) {
+      mark(static_cast<double>(swap.at_step()) * run.trace->scenario.stepSeconds(),
+           std::string("to ") + swap.incoming().c_str(), "#777777");
+    }
+  }
+  if (const auto touch = firstContact(*runs.front().trace)) mark(*touch, "contact", "#b0306a");
+}
+
+void writeScript(const fs::path& stem, const std::string& title, const std::vector<Panel>& all,
+                 const std::vector<LabelledRun>& runs) {
+  std::ofstream script(stem.string() + ".gp", std::ios::binary);
+  script.precision(9);
+  script << "# Drawn by baton figures; run gnuplot on this file to draw it again.\nset encoding utf8\n";
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    for (std::size_t c = 0; c < all[p].curves.size(); ++c) {
+      const Curve& curve = all[p].curves[c];
+      script << fmt::format("$data_{}_{} << end\n", p, c);
+      for (const Eigen::Index k : drawnSteps(curve.y)) {
+        script << curve.trace->time(k) << ' ';
+        if (std::isfinite(curve.y(k))) {
+          script << curve.y(k) << '\n';
+        } else {
+          script << "nan\n";
+        }
+      }
+      script << "end\n";
+    }
+  }
+  const auto height = 90 + 190 * all.size();
+  const std::string name = stem.filename().string();
+  for (const auto& [terminal, extension] :
+       {std::pair{"svg enhanced background 'white' font 'Helvetica,12'", "svg"},
+        std::pair{"pngcairo enhanced background 'white' font 'Helvetica,11'", "png"}}) {
+    script << fmt::format("set terminal {} size 860,{}\nset output {}\n", terminal, height,
+                          quoted(name + "." + extension));
+    script << fmt::format("set multiplot layout {},1 title {} noenhanced\n", all.size(), quoted(title));
+    script << "set grid lc rgb '#dddddd'\nset key outside right top samplen 2\nset lmargin 12\n";
+    writeMarks(script, runs);
+    for (std::size_t p = 0; p < all.size(); ++p) {
+      script << fmt::format("set ylabel {}\n", quoted(all[p].y_label));
+      script << (p + 1 == all.size() ? "set xlabel 'time [s]'\n" : "set xlabel ''\n");
+      script << "plot ";
+      for (std::size_t c = 0; c < all[p].curves.size(); ++c) {
+        const Curve& curve = all[p].curves[c];
+        const char* colour = curve.is_desired ? kDesiredColour : kColours[curve.colour % std::size(kColours)];
+        script << fmt::format("{}$data_{}_{} using 1:2 with lines lc rgb '{}' lw {} dt {} title {} noenhanced",
+                              c == 0 ? "" : ", ", p, c, colour, curve.is_desired ? "1.2" : "1.6",
+                              curve.is_desired ? "2" : "1", quoted(curve.label));
+      }
+      script << '\n';
+    }
+    script << "unset multiplot\nunset output\nreset\n";
+  }
+  script.close();
+  if (!script) throw UnavailableError("cannot write " + stem.string() + ".gp");
+}
+
+/// Lets gnuplot work on `argument` in `folder`.
+void runGnuplot(const fs::path& folder, const std::string& argument) {
+  const pid_t pid = fork();
+  if (pid == 0) {
+    if (chdir(folder.c_str()) != 0) _exit(126);
+    if (argument == "--version") dup2(STDERR_FILENO, STDOUT_FILENO);
+    execlp("gnuplot", "gnuplot", argument.c_str(), nullptr);
+    _exit(127);
+  }
+  int how = 0;
+  if (pid < 0 || waitpid(pid, &how, 0) != pid) throw UnavailableError("cannot start gnuplot");
+  if (WIFEXITED(how) && WEXITSTATUS(how) == 127) {
+    throw UnavailableError("gnuplot is missing: deploy/setup installs it (Debian: gnuplot-nox)");
+  }
+  if (!WIFEXITED(how) || WEXITSTATUS(how) != 0) {
+    throw UnavailableError("gnuplot failed on " + (folder / argument).string() + ": run it by hand to see why");
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& plotKinds() {
+  static const std::vector<std::string> kinds{"joints", "joint_errors", "tip",   "tip_errors",
+                                              "angles", "efforts",      "force", "force_reference"};
+  return kinds;
+}
+
+void draw(const fs::path& stem, const std::string& title, const std::string& kind,
+          const std::vector<LabelledRun>& runs) {
+  writeScript(stem, title, panels(kind, runs), runs);
+  runGnuplot(stem.parent_path(), stem.filename().string() + ".gp");
+}
+
+void expectGnuplot() { runGnuplot(fs::temp_directory_path(), "--version"); }
+
+}  // namespace baton

@@ -1,0 +1,29 @@
+/// Drawings of recorded runs, by gnuplot: desired against actual over time, units on the axes, handovers and contact
+/// marked.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "trace.hpp"
+
+namespace baton {
+
+struct LabelledRun {
+  std::string label;  // empty when the drawing has one run only
+  const Trace* trace = nullptr;
+};
+
+/// What can be drawn: joints, joint_errors, tip, tip_errors, angles, efforts, force, force_reference.
+[[nodiscard]] const std::vector<std::string>& plotKinds();
+
+/// Writes `stem`.gp, a script with its data, and lets gnuplot make `stem`.svg and `stem`.png of it; all runs go into
+/// the same panels. Throws UsageError for an unknown kind, UnavailableError when gnuplot is missing or fails.
+void draw(const std::filesystem::path& stem, const std::string& title, const std::string& kind,
+          const std::vector<LabelledRun>& runs);
+
+/// Throws UnavailableError when gnuplot is missing, before anybody has waited for what it is to draw.
+void expectGnuplot();
+
+}  // namespace baton
