@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <vector>
 
-#include "base/error.hpp"
+#include "control/nearest_name.hpp"
 
 namespace baton {
 
@@ -17,6 +18,22 @@ bool parseCommandLine(CLI::App& app, int argc, const char* const* argv) {
     throw UsageError(std::string(error.what()) + " (see --help)");
   }
   return true;
+}
+
+ExitCode runCommand(CLI::App& app, int argc, const char* const* argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // CLI11 would ask for a subcommand without naming the word that is none.
+    const std::string word = argc > 1 ? argv[1] : "";
+    std::vector<std::string> known;
+    for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+    const bool is_command = std::find(known.begin(), known.end(), word) != known.end();
+    const bool lacks_command = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && !is_command;
+    if (lacks_command && !word.empty()) throw UsageError(unknownName("command", word, known));
+    return app.exit(error) == 0 ? ExitCode::kOk : ExitCode::kUsage;
+  }
+  return ExitCode::kOk;
 }
 
 CLI::Option* addCell(CLI::App& app, std::string& cell) {

@@ -4,12 +4,17 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "base/error.hpp"
 #include "dds/types.hpp"
 
 namespace baton {
 
 /// Parses. Returns false after printing the help that was asked for. Throws UsageError for a line that is wrong.
 [[nodiscard]] bool parseCommandLine(CLI::App& app, int argc, const char* const* argv);
+
+/// Parses a line that begins with a command, which runs as it is met. Returns kOk, or kUsage after saying what is wrong
+/// with the line. Throws UsageError for a word that is no command.
+[[nodiscard]] ExitCode runCommand(CLI::App& app, int argc, const char* const* argv);
 
 /// --cell: refuses a name that is not 1 to 31 of A-Z a-z 0-9 _ -, as it becomes part of a file's name and of a DDS
 /// partition.

@@ -62,11 +62,10 @@ void Service::giveWayToElders() {
 }
 
 void Service::peerJoined(const dds::Peer& peer) {
-  giveWayToElders();
+  checkBarrier();
   if (!gave_way_ && isRival(peer)) {
     event(msg::SEVERITY_WARNING, "intruder", "a second " + peer.service + " of run " + peer.run + "; this one goes on");
   }
-  checkBarrier();
 }
 
 void Service::giveWay(const std::string& why) {
@@ -81,9 +80,8 @@ void Service::matchesChanged() {
 }
 
 void Service::checkBarrier() {
-  if (ready_) return;
   giveWayToElders();
-  if (gave_way_) return;
+  if (ready_ || gave_way_) return;
   const std::string missing = barrier_.missing();
   ready_ = missing.empty();
   if (ready_ || missing != told_missing_) {

@@ -1,10 +1,7 @@
 // The command line people type.
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-
 #include "bag_command.hpp"
-#include "control/nearest_name.hpp"
 #include "demo_command.hpp"
 #include "figures_command.hpp"
 #include "laws_command.hpp"
@@ -13,6 +10,7 @@
 #include "operate_commands.hpp"
 #include "replay_command.hpp"
 #include "run_commands.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/log.hpp"
 #include "runtime/run.hpp"
 
@@ -37,18 +35,7 @@ int main(int argc, char** argv) {
     baton::addFiguresCommand(app, exit_code);
     baton::addModelCommand(app, exit_code);
     baton::addLawsCommand(app);
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::RequiredError&) {
-      // CLI11 would ask for a subcommand without naming the word that is none.
-      const std::string word = argc > 1 ? argv[1] : "";
-      std::vector<std::string> known;
-      for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
-      if (word.empty() || std::find(known.begin(), known.end(), word) != known.end()) throw;
-      throw baton::UsageError(baton::unknownName("command", word, known));
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? baton::ExitCode::kOk : baton::ExitCode::kUsage;
-    }
-    return exit_code;
+    const baton::ExitCode parsed = baton::runCommand(app, argc, argv);
+    return parsed == baton::ExitCode::kOk ? exit_code : parsed;
   });
 }

@@ -116,6 +116,11 @@ TEST(CommandLine, RefusesWrongInputWithWhereAndWhy) {
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_NE(missing.err.find("demo"), std::string::npos) << missing.err;
   EXPECT_EQ(bench.baton({"run", "demo", "--transport", "smoke"}).exit_code, 2);
+  EXPECT_EQ(bench.baton({"swap"}).exit_code, 2) << "a name is required";
+  EXPECT_EQ(bench.baton({"sim"}).exit_code, 2) << "a subcommand is required";
+  const Finished unknown = bench.baton({"statuss"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("did you mean 'status'"), std::string::npos) << unknown.err;
   EXPECT_EQ(runProgram(programFolder() / "baton", {"status", "--domain", "999"}, bench.folder()).exit_code, 2);
   EXPECT_EQ(bench.baton({"down"}).exit_code, 3);
   EXPECT_EQ(bench.baton({"logs"}).exit_code, 3);

@@ -3,22 +3,14 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
+#include "runtime/paths.hpp"
 #include "support/processes.hpp"
 #include "support/short_contact.hpp"
 
 namespace baton::test {
 namespace {
 namespace fs = std::filesystem;
-
-std::string contentsOf(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
 
 TEST(Report, MetricsOfARunAreThoseOfItsStates) {
   const Bench bench;
@@ -55,14 +47,14 @@ TEST(Report, AFigureIsRunDrawnAndHeldAgainstTheory) {
   for (const auto& entry : fs::directory_iterator(out)) {
     if (entry.path().extension() == ".svg") {
       ++drawings;
-      EXPECT_NE(contentsOf(entry.path()).find("</svg>"), std::string::npos) << entry.path();
+      EXPECT_NE(readFile(entry.path()).find("</svg>"), std::string::npos) << entry.path();
     }
     if (entry.path().extension() == ".png") {
-      EXPECT_EQ(contentsOf(entry.path()).substr(1, 3), "PNG") << entry.path();
+      EXPECT_EQ(readFile(entry.path()).substr(1, 3), "PNG") << entry.path();
     }
   }
   EXPECT_GT(drawings, 0U);
-  const std::string page = contentsOf(fs::path(out) / "index.html");
+  const std::string page = readFile(fs::path(out) / "index.html");
   EXPECT_NE(page.find("agrees with theory"), std::string::npos);
   EXPECT_NE(page.find("What the report has wrong"), std::string::npos);
 

@@ -14,7 +14,7 @@
 #include <memory>
 
 #include "dds/topics.hpp"
-#include "mcap/reader.hpp"
+#include "recording.hpp"
 #include "runtime/build_id.hpp"
 #include "runtime/child.hpp"
 #include "runtime/log.hpp"
@@ -33,31 +33,16 @@ bool isRecordingOf(const fs::path& file, const Scenario& scenario, const std::st
   if (!fs::is_regular_file(file)) return false;
   try {
     const mcap::Reader reader(file);
-    const auto holds = [&](const std::string& name, const std::string& text) {
-      return std::any_of(reader.attachments().begin(), reader.attachments().end(), [&](const auto& attachment) {
-        if (attachment.name != name) return false;
-        const mcap::Bytes data = reader.readAttachment(attachment);
-        return text == std::string_view(reinterpret_cast<const char*>(data.data()), data.size());
-      });
-    };
     std::uint64_t states = 0;  // a run that was stopped before its end can be complete as a recording
     for (const auto& [id, channel] : reader.channels()) {
       const auto count = reader.statistics().channel_message_counts.find(id);
       const bool has_states = channel.topic == dds::topics::kPlantState.name;
       if (has_states && count != reader.statistics().channel_message_counts.end()) states += count->second;
     }
-    bool is_certified = false;
-    bool is_same_build = false;
-    for (const mcap::Metadata& one : reader.metadata()) {
-      const auto says = [&](const char* key, const char* value) {
-        const auto found = one.values.find(key);
-        return found != one.values.end() && found->second == value;
-      };
-      if (one.name == "baton.certificate") is_certified = says("complete", "true");
-      if (one.name == "baton.run") is_same_build = says("build_id", build.c_str());
-    }
-    return states == scenario.end_step + 1 && is_certified && is_same_build && holds("scenario.yaml", scenario.text) &&
-           holds("robot.yaml", scenario.robot_text);
+    return states == scenario.end_step + 1 && isCertified(reader) &&
+           metadataValue(reader, "baton.run", "build_id") == build &&
+           attachmentText(reader, "scenario.yaml") == scenario.text &&
+           attachmentText(reader, "robot.yaml") == scenario.robot_text;
   } catch (const std::exception&) {
     return false;  // not a recording that anybody can use
   }

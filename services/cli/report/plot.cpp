@@ -36,61 +36,56 @@ struct Panel {
 
 std::string named(const std::string& run, const std::string& what) { return run.empty() ? what : run + ", " + what; }
 
-/// One panel a row of `actual`, with the same row of `desired` when there is one.
+/// One panel a label; `add(panel, row, run)` draws the curves of each run into it.
+template <class Add>
 std::vector<Panel> panelsOf(const std::vector<LabelledRun>& runs, const std::vector<std::string>& labels,
-                            Eigen::MatrixXd Trace::*actual, Eigen::MatrixXd Trace::*desired) {
+                            const Add& add) {
   std::vector<Panel> panels;
   for (std::size_t row = 0; row < labels.size(); ++row) {
     Panel panel{.y_label = labels[row], .curves = {}};
-    for (std::size_t run = 0; run < runs.size(); ++run) {
-      const Trace& trace = *runs[run].trace;
-      const auto i = static_cast<Eigen::Index>(row);
-      const bool is_wanted = desired != nullptr && (trace.*desired).row(i).array().isFinite().any();
-      // The same reference is drawn once.
-      const bool is_new = run == 0 || !is_wanted || (trace.*desired).cols() != (runs[0].trace->*desired).cols() ||
-                          (trace.*desired).row(i) != (runs[0].trace->*desired).row(i);
-      panel.curves.push_back(
-          {runs[run].label.empty() ? "actual" : runs[run].label, &trace, (trace.*actual).row(i), run, false});
-      if (is_wanted && is_new) {
-        panel.curves.push_back({runs.size() == 1 || run == 0 ? "desired" : named(runs[run].label, "desired"), &trace,
-                                (trace.*desired).row(i), run, true});
-      }
-    }
+    for (std::size_t run = 0; run < runs.size(); ++run) add(panel, static_cast<Eigen::Index>(row), run);
     panels.push_back(std::move(panel));
   }
   return panels;
 }
 
+using Rows = Eigen::MatrixXd Trace::*;
+
+/// The rows of `actual`, with those of `desired` where there are any.
+std::vector<Panel> signalPanels(const std::vector<LabelledRun>& runs, const std::vector<std::string>& labels,
+                                Rows actual, Rows desired) {
+  return panelsOf(runs, labels, [&](Panel& panel, Eigen::Index row, std::size_t run) {
+    const Trace& trace = *runs[run].trace;
+    const std::string& label = runs[run].label;
+    panel.curves.push_back({label.empty() ? "actual" : label, &trace, (trace.*actual).row(row), run, false});
+    if (desired == nullptr || !(trace.*desired).row(row).array().isFinite().any()) return;
+    // The same reference is drawn once.
+    const Eigen::MatrixXd& first = runs[0].trace->*desired;
+    if (run > 0 && (trace.*desired).cols() == first.cols() && (trace.*desired).row(row) == first.row(row)) return;
+    panel.curves.push_back(
+        {run == 0 ? "desired" : named(label, "desired"), &trace, (trace.*desired).row(row), run, true});
+  });
+}
+
 std::vector<Panel> errorPanels(const std::vector<LabelledRun>& runs, const std::vector<std::string>& labels,
-                               Eigen::MatrixXd Trace::*actual, Eigen::MatrixXd Trace::*desired) {
-  std::vector<Panel> panels;
-  for (std::size_t row = 0; row < labels.size(); ++row) {
-    Panel panel{.y_label = labels[row], .curves = {}};
-    for (std::size_t run = 0; run < runs.size(); ++run) {
-      const Trace& trace = *runs[run].trace;
-      const auto i = static_cast<Eigen::Index>(row);
-      panel.curves.push_back({runs[run].label.empty() ? "desired - actual" : runs[run].label, &trace,
-                              (trace.*desired).row(i) - (trace.*actual).row(i), run, false});
-    }
-    panels.push_back(std::move(panel));
-  }
-  return panels;
+                               Rows actual, Rows desired) {
+  return panelsOf(runs, labels, [&](Panel& panel, Eigen::Index row, std::size_t run) {
+    const Trace& trace = *runs[run].trace;
+    panel.curves.push_back({runs[run].label.empty() ? "desired - actual" : runs[run].label, &trace,
+                            (trace.*desired).row(row) - (trace.*actual).row(row), run, false});
+  });
 }
 
 /// Where force control wants the tip, x_F, which is nobody's message, and where it is.
 std::vector<Panel> forceReferencePanels(const std::vector<LabelledRun>& runs) {
-  std::vector<Panel> panels;
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    Panel panel{.y_label = std::string(1, "xyz"[axis]) + " [m]", .curves = {}};
-    for (std::size_t run = 0; run < runs.size(); ++run) {
-      const Trace& trace = *runs[run].trace;
-      const std::string& label = runs[run].label;
-      panel.curves.push_back({named(label, "x_e"), &trace, trace.p_WE.row(axis), run, false});
-      panel.curves.push_back({named(label, "x_F"), &trace, forceReference(trace).row(axis), run, true});
-    }
-    panels.push_back(std::move(panel));
-  }
-  return panels;
+  std::vector<Eigen::MatrixXd> x_F;
+  x_F.reserve(runs.size());
+  for (const LabelledRun& run : runs) x_F.push_back(forceReference(*run.trace));
+  return panelsOf(runs, {"x [m]", "y [m]", "z [m]"}, [&](Panel& panel, Eigen::Index row, std::size_t run) {
+    const Trace& trace = *runs[run].trace;
+    panel.curves.push_back({named(runs[run].label, "x_e"), &trace, trace.p_WE.row(row), run, false});
+    panel.curves.push_back({named(runs[run].label, "x_F"), &trace, x_F[run].row(row), run, true});
+  });
 }
 
 std::vector<std::string> jointLabels(const Trace& trace, const std::string& symbol, const std::string& turning,
@@ -105,16 +100,16 @@ std::vector<std::string> jointLabels(const Trace& trace, const std::string& symb
 
 std::vector<Panel> panels(const std::string& kind, const std::vector<LabelledRun>& runs) {
   const Trace& first = *runs.front().trace;
-  if (kind == "joints") return panelsOf(runs, jointLabels(first, "q", "rad", "m"), &Trace::q, &Trace::q_d);
+  if (kind == "joints") return signalPanels(runs, jointLabels(first, "q", "rad", "m"), &Trace::q, &Trace::q_d);
   if (kind == "joint_errors") return errorPanels(runs, jointLabels(first, "e", "rad", "m"), &Trace::q, &Trace::q_d);
-  if (kind == "efforts") return panelsOf(runs, jointLabels(first, "\u03c4", "N m", "N"), &Trace::tau, nullptr);
-  if (kind == "tip") return panelsOf(runs, {"x [m]", "y [m]", "z [m]"}, &Trace::p_WE, &Trace::p_WE_d);
+  if (kind == "efforts") return signalPanels(runs, jointLabels(first, "\u03c4", "N m", "N"), &Trace::tau, nullptr);
+  if (kind == "tip") return signalPanels(runs, {"x [m]", "y [m]", "z [m]"}, &Trace::p_WE, &Trace::p_WE_d);
   if (kind == "tip_errors") return errorPanels(runs, {"e_x [m]", "e_y [m]", "e_z [m]"}, &Trace::p_WE, &Trace::p_WE_d);
   if (kind == "angles") {
-    return panelsOf(runs, {"\u03c6 [rad]", "\u03d1 [rad]", "\u03c8 [rad]"}, &Trace::zyz, &Trace::zyz_d);
+    return signalPanels(runs, {"\u03c6 [rad]", "\u03d1 [rad]", "\u03c8 [rad]"}, &Trace::zyz, &Trace::zyz_d);
   }
   if (kind == "force_reference") return forceReferencePanels(runs);
-  if (kind == "force") return panelsOf(runs, {"f_x [N]", "f_y [N]", "f_z [N]"}, &Trace::h_e, &Trace::h_d);
+  if (kind == "force") return signalPanels(runs, {"f_x [N]", "f_y [N]", "f_z [N]"}, &Trace::h_e, &Trace::h_d);
   throw UsageError(unknownName("plot", kind, plotKinds()));
 }
 

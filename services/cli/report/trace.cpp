@@ -4,23 +4,19 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
-#include <span>
+#include <utility>
 
 #include "base/error.hpp"
 #include "dds/codec.hpp"
 #include "dds/topics.hpp"
-#include "mcap/reader.hpp"
+#include "recording.hpp"
 #include "robot/kinematics.hpp"
 
 namespace baton {
 namespace {
 
 std::string attachment(const mcap::Reader& reader, const std::string& name, const std::filesystem::path& file) {
-  for (const mcap::AttachmentIndex& index : reader.attachments()) {
-    if (index.name != name) continue;
-    const mcap::Bytes data = reader.readAttachment(index);
-    return {reinterpret_cast<const char*>(data.data()), data.size()};
-  }
+  if (std::optional<std::string> text = attachmentText(reader, name)) return std::move(*text);
   throw UsageError(file.string() + ": expected the recording of a run, with its " + name + ", found none");
 }
 
@@ -29,14 +25,6 @@ std::uint64_t countOf(const mcap::Reader& reader, const std::string& topic) {
   reader.forEachMessage({.topics = {topic}, .order = mcap::MessageFilter::Order::kFile},
                         [&](const mcap::MessageView&) { ++count; });
   return count;
-}
-
-bool isCertified(const mcap::Reader& reader) {
-  const std::vector<mcap::Metadata> all = reader.metadata();
-  return std::any_of(all.begin(), all.end(), [](const mcap::Metadata& one) {
-    const auto complete = one.values.find("complete");
-    return one.name == "baton.certificate" && complete != one.values.end() && complete->second == "true";
-  });
 }
 
 Eigen::Quaterniond toEigen(const msg::Quaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
@@ -130,13 +118,15 @@ class Filler {
   std::vector<Eigen::Quaterniond> actual_;
 };
 
-template <class T>
-void read(const mcap::Reader& reader, const dds::Topic<T>& topic, Filler& filler) {
-  T message;
-  reader.forEachMessage({.topics = {topic.name}, .order = mcap::MessageFilter::Order::kFile},
-                        [&](const mcap::MessageView& view) {
-                          if (dds::decode(view.data, message)) filler(message);
-                        });
+/// Reads the messages of these topics in one pass over the file.
+template <class... T>
+void read(const mcap::Reader& reader, Filler& filler, const dds::Topic<T>&... topics) {
+  const auto fill = [&]<class M>(const dds::Topic<M>& topic, const mcap::MessageView& view) {
+    M message;
+    if (view.channel->topic == topic.name && dds::decode(view.data, message)) filler(message);
+  };
+  reader.forEachMessage({.topics = {topics.name...}, .order = mcap::MessageFilter::Order::kFile},
+                        [&](const mcap::MessageView& view) { (fill(topics, view), ...); });
 }
 
 }  // namespace
@@ -151,12 +141,9 @@ Trace readTrace(const std::filesystem::path& file) {
   const std::uint64_t steps = countOf(reader, dds::topics::kPlantState.name);
   if (steps == 0) throw UsageError(file.string() + ": expected states of a plant, found none");
   Filler filler(trace, static_cast<Eigen::Index>(steps));
-  read(reader, dds::topics::kPlantState, filler);
-  read(reader, dds::topics::kReference, filler);
-  read(reader, dds::topics::kContact, filler);
-  read(reader, dds::topics::kJointCommand, filler);
-  read(reader, dds::topics::kSwapOutcome, filler);
-  read(reader, dds::topics::kSimStatus, filler);
+  read(reader, filler, dds::topics::kPlantState);  // first: whose command counts is what the states say
+  read(reader, filler, dds::topics::kReference, dds::topics::kContact, dds::topics::kJointCommand,
+       dds::topics::kSwapOutcome, dds::topics::kSimStatus);
   filler.finish();
   return trace;
 }
