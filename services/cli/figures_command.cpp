@@ -105,6 +105,10 @@ FigureResult resultOf(const Figure& figure, const std::map<std::string, BatchRun
       result.checks.push_back(std::move(check));
     }
   }
+  for (const LabelledRun& run : labelled) {
+    result.checks.push_back(followsScenario(*run.trace));
+    if (!run.label.empty()) result.checks.back().what += ", " + run.label;
+  }
   for (const std::string& kind : figure.plots) {
     const std::string stem = figure.runs.front().scenario + "_" + kind;
     draw(out / stem, figure.title, kind, labelled);

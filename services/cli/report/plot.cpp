@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
+#include <map>
 #include <optional>
 
 #include "base/error.hpp"
@@ -175,7 +177,31 @@ void writeMarks(std::ofstream& script, const std::vector<LabelledRun>& runs) {
            std::string("to ") + swap.incoming().c_str(), "#777777");
     }
   }
-  if (const auto touch = firstContact(*runs.front().trace)) mark(*touch, "contact", "#b0306a");
+  std::map<double, std::string> touches;  // runs that touch at the same time share a mark
+  for (const LabelledRun& run : runs) {
+    const auto touch = firstContact(*run.trace);
+    if (!touch) continue;
+    std::string& who = touches[*touch];
+    if (!run.label.empty()) who += (who.empty() ? ": " : ", ") + run.label;
+  }
+  const bool differ = touches.size() > 1;
+  for (const auto& [time_s, who] : touches) mark(time_s, differ ? "contact" + who : "contact", "#b0306a");
+}
+
+/// Left to itself gnuplot would complain of a panel whose curves are all flat.
+std::string yRange(const Panel& panel) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Curve& curve : panel.curves) {
+    for (const double y : curve.y) {
+      if (!std::isfinite(y)) continue;
+      low = std::min(low, y);
+      high = std::max(high, y);
+    }
+  }
+  if (!(low <= high)) return "set yrange [-1:1]\n";  // nothing to draw
+  constexpr double kFlat = 1e-12;                    // of the value
+  const bool is_flat = high - low <= kFlat * std::max(std::abs(low), std::abs(high));
+  return is_flat ? fmt::format("set yrange [{}:{}]\n", low - 1.0, low + 1.0) : "set autoscale y\n";
 }
 
 void writeScript(const fs::path& stem, const std::string& title, const std::vector<Panel>& all,
@@ -209,7 +235,7 @@ void writeScript(const fs::path& stem, const std::string& title, const std::vect
     script << "set grid lc rgb '#dddddd'\nset key outside right top samplen 2\nset lmargin 12\n";
     writeMarks(script, runs);
     for (std::size_t p = 0; p < all.size(); ++p) {
-      script << fmt::format("set ylabel {}\n", quoted(all[p].y_label));
+      script << fmt::format("set ylabel {}\n", quoted(all[p].y_label)) << yRange(all[p]);
       script << (p + 1 == all.size() ? "set xlabel 'time [s]'\n" : "set xlabel ''\n");
       script << "plot ";
       for (std::size_t c = 0; c < all[p].curves.size(); ++c) {

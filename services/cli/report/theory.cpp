@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "control/nearest_name.hpp"
 #include "theory_tools.hpp"
+#include "trajectory/trajectory.hpp"
 
 namespace baton {
 namespace {
@@ -84,6 +85,33 @@ std::vector<Check> runCheck(const CheckRequest& request, const std::vector<Trace
     for (Check& check : checks) check.tolerance = *request.tolerance;
   }
   return checks;
+}
+
+Check followsScenario(const Trace& run) {
+  const Trajectory trajectory(run.scenario.robot, run.scenario.trajectory);
+  double worst = 0.0;
+  const auto compare = [&](const auto& wanted, const auto& recorded) {
+    const double apart = (wanted - recorded).cwiseAbs().maxCoeff();
+    if (!(apart <= worst)) worst = apart;  // what was not recorded is NaN, and stays
+  };
+  Reference wanted;
+  for (Eigen::Index k = 0; k < run.steps() && !std::isnan(worst); ++k) {
+    trajectory.evaluate(run.time(k), wanted);
+    if (wanted.q.size() > 0) {
+      compare(wanted.q, run.q_d.col(k));
+      compare(wanted.qd, run.qd_d.col(k));
+      compare(wanted.qdd, run.qdd_d.col(k));
+    }
+    if (wanted.has_task) {
+      compare(wanted.X_WE.p, run.p_WE_d.col(k));
+      compare(wanted.h_d, run.h_d.col(k));
+    }
+  }
+  return {.what = "largest difference between the recorded reference and the scenario's",
+          .unit = "rad, m or N",
+          .predicted = 0.0,
+          .measured = worst,
+          .tolerance = 0.0};
 }
 
 }  // namespace baton

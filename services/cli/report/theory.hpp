@@ -1,5 +1,6 @@
-/// What theory says of a run, held against what its trace shows. Each check predicts from the scenario alone (law
-/// parameters, robot, walls, trajectory) by an equation that stands beside it, and never calls a law.
+/// What theory says of a run, held against what its trace shows. Each check predicts from the scenario (law parameters,
+/// robot, walls, trajectory) by an equation that stands beside it, and never calls a law. Where a check reads the
+/// desired motion from the recording, followsScenario() vouches that it is the scenario's.
 ///
 /// Tolerances. Where things come to rest: 1e-4 of the predicted value, or 1e-6 where zero is predicted. While they
 /// move: the equations are of continuous time, whereas a law acts once a step and its effort is held, so the arm obeys
@@ -40,6 +41,9 @@ struct CheckRequest {
 /// Throws UsageError for a name that is not known, a run that is not there, a second run that is missing, or a run to
 /// which the check does not apply.
 [[nodiscard]] std::vector<Check> runCheck(const CheckRequest& request, const std::vector<Trace>& runs);
+
+/// The recorded reference is what the scenario's trajectory says, to the bit, at every step.
+[[nodiscard]] Check followsScenario(const Trace& run);
 
 /// x_F of a run under force control, rebuilt from the recorded forces: Kf (f_d - f_e) + Ki int (f_d - f_e), which
 /// starts at the tip; 3 x steps [m]. It is nobody's message, and the report's Figures 50 and 51 plot it.
