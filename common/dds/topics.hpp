@@ -6,6 +6,7 @@
 
 #include "dds/types.hpp"
 #include "msg/loop.h"
+#include "msg/parameter.h"
 #include "msg/record.h"
 #include "msg/service.h"
 #include "msg/sim.h"
@@ -42,6 +43,7 @@ inline constexpr Topic<msg::SwapPlan>         kSwapPlan        {"swap_plan",    
 inline constexpr Topic<msg::SwapAck>          kSwapAck         {"swap_ack",          "baton::msg::SwapAck",          Profile::kEvent};
 inline constexpr Topic<msg::SwapOutcome>      kSwapOutcome     {"swap_outcome",      "baton::msg::SwapOutcome",      Profile::kEvent};
 inline constexpr Topic<msg::ControllerStatus> kControllerStatus{"controller_status", "baton::msg::ControllerStatus", Profile::kStatus};
+inline constexpr Topic<msg::ParameterStatus>  kParameterStatus {"parameter_status",  "baton::msg::ParameterStatus",  Profile::kStatus};
 inline constexpr Topic<msg::ServiceStatus>    kServiceStatus   {"service_status",    "baton::msg::ServiceStatus",    Profile::kStatus};
 inline constexpr Topic<msg::ServiceManifest>  kServiceManifest {"service_manifest",  "baton::msg::ServiceManifest",  Profile::kEvent};
 inline constexpr Topic<msg::Event>            kEvent           {"event",             "baton::msg::Event",            Profile::kEvent};

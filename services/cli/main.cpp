@@ -8,6 +8,7 @@
 #include "metrics_command.hpp"
 #include "model_command.hpp"
 #include "operate_commands.hpp"
+#include "param_command.hpp"
 #include "replay_command.hpp"
 #include "run_commands.hpp"
 #include "runtime/command_line.hpp"
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
     baton::addDemoCommand(app, exit_code);
     baton::addRunCommands(app, exit_code);
     baton::addOperateCommands(app, exit_code);
+    baton::addParamCommand(app);
     baton::addReplayCommand(app, exit_code);
     baton::addBagCommand(app, exit_code);
     baton::addMetricsCommand(app);

@@ -1,6 +1,7 @@
 #include "law_runner.hpp"
 
 #include "base/error.hpp"
+#include "parameter_report.hpp"
 
 namespace baton {
 namespace {
@@ -29,6 +30,7 @@ LawRunner::LawRunner(Service& service)
       shadow_out_(service.output(dds::topics::kShadowCommand, withRecorder({}, service.scenario()))),
       ack_out_(service.output(dds::topics::kSwapAck, withRecorder({kPlantName}, service.scenario()))),
       status_out_(service.output(dds::topics::kControllerStatus)) {
+  service.output(dds::topics::kParameterStatus).write(parameterReport(config_));
   input_.dt_s = service.scenario().stepSeconds();
   prepare(message_);
   ack_.effort().reserve(kMaxJoints);

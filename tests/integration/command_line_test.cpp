@@ -1,6 +1,7 @@
 // The daily commands on a live run, and what they say to wrong input.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "support/processes.hpp"
@@ -54,6 +55,16 @@ TEST(CommandLine, OperatesALiveRun) {
     EXPECT_EQ(one.at("state"), one.at("name") == "tracking" ? "active" : "standby") << one;
     EXPECT_EQ(one.at("effort").size(), 3U) << one;
   }
+  const nlohmann::json parameters = bench.batonJson({"param", "list", "--json"});
+  ASSERT_EQ(parameters.size(), 4U);
+  const nlohmann::json one = bench.batonJson({"param", "list", "impedance", "--json"}).at(0);
+  EXPECT_EQ(one.at("law"), "impedance");
+  const auto kp = std::find_if(one.at("parameters").begin(), one.at("parameters").end(),
+                               [](const nlohmann::json& parameter) { return parameter.at("name") == "kp"; });
+  ASSERT_NE(kp, one.at("parameters").end());
+  EXPECT_EQ(kp->at("value"), (std::vector<double>(6, 200.0))) << *kp;
+  EXPECT_EQ(kp->at("unit"), "N/m; N m/rad");
+  EXPECT_EQ(bench.baton({"param", "list", "nobody"}).exit_code, 2);
   const nlohmann::json record = bench.batonJson({"record", "status", "--json"});
   EXPECT_EQ(record.at("state"), "recording");
   EXPECT_EQ(record.at("lost"), 0);
@@ -88,6 +99,8 @@ TEST(CommandLine, EveryCommandHasHelp) {
                                                   {"sim", "rate"},
                                                   {"sim", "stop"},
                                                   {"record", "status"},
+                                                  {"param"},
+                                                  {"param", "list"},
                                                   {"logs"},
                                                   {"replay"},
                                                   {"bag"},

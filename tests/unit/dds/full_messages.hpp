@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "msg/loop.h"
+#include "msg/parameter.h"
 #include "msg/record.h"
 #include "msg/service.h"
 #include "msg/sim.h"
@@ -156,6 +157,24 @@ inline void fill(msg::ControllerStatus& m) {
   m.effort(fullSequence());
   m.effort_gap(fullSequence());
   m.text(std::string(200, 't'));
+}
+
+inline void fill(msg::Parameter& m) {
+  m.name(fullName());
+  m.unit(fullName());
+  m.doc(std::string(120, 'd'));
+  m.numbers(fullSequence());
+  m.minimum(-1e300);
+  m.maximum(1e300);
+  m.word(fullName());
+  m.choices().resize(msg::MAX_WORDS, fullName());
+}
+
+inline void fill(msg::ParameterStatus& m) {
+  m.name(fullName());
+  m.law(fullName());
+  m.parameters().resize(msg::MAX_PARAMETERS);
+  for (msg::Parameter& parameter : m.parameters()) fill(parameter);
 }
 
 inline void fill(msg::ServiceStatus& m) {
