@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "control/arm.hpp"
 #include "control/parameters.hpp"
 #include "environment/plane.hpp"
 #include "robot/model.hpp"
@@ -72,6 +73,8 @@ struct Scenario {
 
   [[nodiscard]] double stepSeconds() const { return static_cast<double>(step_ns) * 1e-9; }
   [[nodiscard]] bool hasEnvironment() const { return !walls.empty(); }
+  /// The arm at the start of the run.
+  [[nodiscard]] ArmConfig armConfig() const;
   /// The controller called that; throws UsageError, with the nearest name, when there is none.
   [[nodiscard]] const ControllerConfig& controller(const std::string& controller_name) const;
 };

@@ -322,6 +322,14 @@ Scenario readScenario(const std::string& file, const std::string& text,
 
 }  // namespace
 
+ArmConfig Scenario::armConfig() const {
+  return {.step_s = stepSeconds(),
+          .substeps = substeps,
+          .blend_steps = baton.blend_steps,
+          .start_q = start_q,
+          .start_qd = start_qd};
+}
+
 const ControllerConfig& Scenario::controller(const std::string& controller_name) const {
   std::vector<std::string> known;
   for (const ControllerConfig& one : controllers) {

@@ -37,7 +37,7 @@ StepMasterConfig masterConfig(const Scenario& scenario) {
 Plant::Plant(Service& service)
     : service_(service),
       scenario_(service.scenario()),
-      arm_(scenario_),
+      arm_(scenario_.robot, scenario_.armConfig()),
       master_(masterConfig(scenario_)),
       arbiter_(arbiterConfig(scenario_)),
       pacer_(scenario_.step_ns, scenario_.rate),

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "arm.hpp"
+#include "control/arm.hpp"
 #include "runtime/service.hpp"
 #include "time/baton_arbiter.hpp"
 #include "time/pacer.hpp"

@@ -1,4 +1,4 @@
-/// The arm the plant simulates: state, blend of torques after a swap, saturation, motion over a step, and the brake.
+/// The arm that is simulated: state, blend of torques after a swap, saturation, motion over a step, and the brake.
 #pragma once
 
 #include <cstdint>
@@ -6,13 +6,22 @@
 #include "base/signals.hpp"
 #include "control/blend.hpp"
 #include "robot/kinematics.hpp"
-#include "runtime/scenario.hpp"
+#include "robot/model.hpp"
 
 namespace baton {
 
+struct ArmConfig {
+  double step_s = 0.0;            // length of a control step
+  int substeps = 1;               // of the integration within it
+  std::uint64_t blend_steps = 0;  // over which the difference between two torques fades
+  JointVector start_q;            // n entries [rad or m]
+  JointVector start_qd;           // n entries [rad/s or m/s]
+};
+
 class Arm {
  public:
-  explicit Arm(const Scenario& scenario);
+  /// `model` must outlive the arm.
+  Arm(const RobotModel& model, const ArmConfig& config);
 
   [[nodiscard]] const RobotState& state() const { return state_; }
 
@@ -21,7 +30,7 @@ class Arm {
   [[nodiscard]] JointVector brakeEffort() const;
 
   /// The difference r0 between what the joints would have felt and what they are given from step K on; it fades away.
-  void blendFrom(std::uint64_t K, const JointVector& r0) { blend_.start(K, blend_steps_, r0); }
+  void blendFrom(std::uint64_t K, const JointVector& r0) { blend_.start(K, config_.blend_steps, r0); }
   /// `effort` plus what is left of the blend at this step.
   [[nodiscard]] JointVector blended(std::uint64_t step, const JointVector& effort) const;
 
@@ -37,9 +46,7 @@ class Arm {
 
   static constexpr double kBrakeRate = 20.0;  // 1/s
   const RobotModel& model_;
-  double step_s_;
-  int substeps_;
-  std::uint64_t blend_steps_;
+  ArmConfig config_;
   RobotState state_;
   Kinematics kinematics_;
   BumplessBlend blend_;

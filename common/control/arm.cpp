@@ -1,17 +1,13 @@
-#include "arm.hpp"
+#include "control/arm.hpp"
 
 #include "robot/dynamics.hpp"
 #include "robot/simulation.hpp"
 
 namespace baton {
 
-Arm::Arm(const Scenario& scenario)
-    : model_(scenario.robot),
-      step_s_(scenario.stepSeconds()),
-      substeps_(scenario.substeps),
-      blend_steps_(scenario.baton.blend_steps) {
-  state_.q = scenario.start_q;
-  state_.qd = scenario.start_qd;
+Arm::Arm(const RobotModel& model, const ArmConfig& config) : model_(model), config_(config) {
+  state_.q = config.start_q;
+  state_.qd = config.start_qd;
   state_.tau_applied = JointVector::Zero(model_.size());
   updateTip();
 }
@@ -45,7 +41,7 @@ JointVector Arm::holdingEffort(std::uint64_t step) const {
 bool Arm::move(const JointVector& tau, const Contact& contact) {
   JointVector applied = tau;
   saturateEffort(model_, applied);
-  if (!integrateStep(model_, applied, contact, step_s_, substeps_, state_.q, state_.qd)) return false;
+  if (!integrateStep(model_, applied, contact, config_.step_s, config_.substeps, state_.q, state_.qd)) return false;
   state_.tau_applied = applied;
   updateTip();
   return true;
