@@ -5,6 +5,7 @@
 #include <fastcdr/FastBuffer.h>
 #include <fastcdr/exceptions/Exception.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -20,12 +21,14 @@ template <class T>
   return T::getMaxCdrSerializedSize() + 4 + kPayloadAlignment;
 }
 
-/// Encodes into `buffer` (at least maxPayload<T>() bytes). Returns the payload, a view of the buffer; empty when it
-/// does not fit, which for a message within its bounds cannot happen.
+/// Encodes into `buffer` (at least maxPayload<T>() bytes), whatever it held. Returns the payload, a view of the buffer;
+/// empty when it does not fit, which for a message within its bounds cannot happen.
 template <class T>
 [[nodiscard]] std::span<const std::byte> encode(const T& message, std::span<std::byte> buffer) noexcept {
   using eprosima::fastcdr::Cdr;
   try {
+    // Members are aligned by skipping bytes: without this, what the buffer held before would go out in between.
+    std::fill(buffer.begin(), buffer.end(), std::byte{0});
     eprosima::fastcdr::FastBuffer fast(reinterpret_cast<char*>(buffer.data()), buffer.size());
     Cdr cdr(fast, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
     cdr.serialize_encapsulation();

@@ -84,6 +84,13 @@ TYPED_TEST(CodecTest, AFullMessageSurvivesTheRoundTrip) {
   EXPECT_EQ(encoded(back), payload);
 }
 
+TYPED_TEST(CodecTest, APayloadDependsOnNothingButTheMessage) {
+  const auto message = test::full<TypeParam>();
+  Bytes used(maxPayload<TypeParam>(), std::byte{0xAA});
+  const auto payload = encode(message, std::span(used));
+  EXPECT_EQ(Bytes(payload.begin(), payload.end()), encoded(message));
+}
+
 TYPED_TEST(CodecTest, AnEmptyMessageSurvivesTheRoundTrip) {
   const TypeParam message;
   TypeParam back = test::full<TypeParam>();
