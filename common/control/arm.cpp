@@ -5,6 +5,15 @@
 
 namespace baton {
 
+const char* toString(Coupling coupling) {
+  switch (coupling) {
+    case Coupling::kDerivatives: return "derivatives";
+    case Coupling::kHeld: return "held";
+    case Coupling::kLate: return "late";
+  }
+  return "?";
+}
+
 Arm::Arm(const RobotModel& model, const ArmConfig& config) : model_(model), config_(config) {
   state_.q = config.start_q;
   state_.qd = config.start_qd;
@@ -38,10 +47,19 @@ JointVector Arm::holdingEffort(std::uint64_t step) const {
   return 2.0 * state_.tau_applied - blended(step, state_.tau_applied);
 }
 
+Contact Arm::felt(const Contact& contact) const {
+  if (config_.coupling == Coupling::kDerivatives) return contact;
+  Contact held;
+  held.h_e = config_.coupling == Coupling::kLate ? h_e_before_.value_or(contact.h_e) : contact.h_e;
+  return held;
+}
+
 bool Arm::move(const JointVector& tau, const Contact& contact) {
   JointVector applied = tau;
   saturateEffort(model_, applied);
-  if (!integrateStep(model_, applied, contact, config_.step_s, config_.substeps, state_.q, state_.qd)) return false;
+  if (!integrateStep(model_, applied, felt(contact), config_.step_s, config_.substeps, state_.q, state_.qd))
+    return false;
+  h_e_before_ = contact.h_e;
   state_.tau_applied = applied;
   updateTip();
   return true;

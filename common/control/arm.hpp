@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "base/signals.hpp"
 #include "control/blend.hpp"
@@ -10,12 +11,22 @@
 
 namespace baton {
 
+/// What the arm feels of the environment within a step, of which it hears at the step's start.
+enum class Coupling {
+  kDerivatives,  // the force at the start, followed by its derivatives as the tip moves
+  kHeld,         // the force at the start, kept: half a step late on average, as damping of -K dt/2
+  kLate          // the force of the step before, kept: damping of -3 K dt/2. The first step keeps its own
+};
+inline constexpr Coupling kCouplings[] = {Coupling::kDerivatives, Coupling::kHeld, Coupling::kLate};
+[[nodiscard]] const char* toString(Coupling coupling);  // as scenarios call it
+
 struct ArmConfig {
   double step_s = 0.0;            // length of a control step
   int substeps = 1;               // of the integration within it
   std::uint64_t blend_steps = 0;  // over which the difference between two torques fades
   JointVector start_q;            // n entries [rad or m]
   JointVector start_qd;           // n entries [rad/s or m/s]
+  Coupling coupling = Coupling::kDerivatives;
 };
 
 class Arm {
@@ -37,12 +48,13 @@ class Arm {
   /// The effort that, blended at this step, keeps the joints' present torque.
   [[nodiscard]] JointVector holdingEffort(std::uint64_t step) const;
 
-  /// Holds tau, cut to the joints' limits, over one step. Returns false, leaving the state as it was, when the motion
-  /// stops being finite.
+  /// Holds tau, cut to the joints' limits, over one step that begins with this contact. Returns false, leaving the
+  /// state as it was, when the motion stops being finite.
   [[nodiscard]] bool move(const JointVector& tau, const Contact& contact);
 
  private:
   void updateTip();
+  [[nodiscard]] Contact felt(const Contact& contact) const;
 
   static constexpr double kBrakeRate = 20.0;  // 1/s
   const RobotModel& model_;
@@ -50,6 +62,7 @@ class Arm {
   RobotState state_;
   Kinematics kinematics_;
   BumplessBlend blend_;
+  std::optional<Vector6> h_e_before_;  // at the start of the step before
 };
 
 }  // namespace baton

@@ -62,6 +62,7 @@ struct Scenario {
   JointVector start_q;
   JointVector start_qd;
   std::vector<PlaneSpec> walls;  // none: no environment process
+  Coupling coupling = Coupling::kDerivatives;
   TrajectorySpec trajectory;
   std::vector<ControllerConfig> controllers;
   std::string active;       // who holds the baton at step 0

@@ -122,6 +122,12 @@ void warnOfFastFriction(const YamlMap& map, Scenario& scenario) {
   scenario.warnings.push_back(text.str());
 }
 
+Coupling readCoupling(const YamlNode& node) {
+  std::vector<std::pair<std::string, Coupling>> choices;
+  for (const Coupling one : kCouplings) choices.emplace_back(toString(one), one);
+  return node.oneOf(choices);
+}
+
 // --- controllers
 
 ParameterValue readParameter(const YamlNode& node, bool is_choice) {
@@ -304,7 +310,9 @@ Scenario readScenario(const std::string& file, const std::string& text,
   readStart(map, scenario);
   warnOfFastFriction(map, scenario);
   if (const auto environment = map.find("environment")) {
-    scenario.walls = readWalls(environment->map({"walls"})["walls"]);
+    const YamlMap world = environment->map({"walls", "coupling"});
+    scenario.walls = readWalls(world["walls"]);
+    if (const auto coupling = world.find("coupling")) scenario.coupling = readCoupling(*coupling);
   }
   scenario.trajectory = readTrajectory(map["trajectory"], scenario.robot, scenario.start_q);
   for (const YamlNode& controller : map["controllers"].list(1, kMaxControllers)) {
@@ -327,7 +335,8 @@ ArmConfig Scenario::armConfig() const {
           .substeps = substeps,
           .blend_steps = baton.blend_steps,
           .start_q = start_q,
-          .start_qd = start_qd};
+          .start_qd = start_qd,
+          .coupling = coupling};
 }
 
 const ControllerConfig& Scenario::controller(const std::string& controller_name) const {

@@ -113,6 +113,17 @@ RobotModel link1Robot() {
   return robot;
 }
 
+RobotModel slider(double mass_kg) {
+  Joint joint;
+  joint.name = "slide";
+  joint.kind = JointKind::kPrismatic;
+  joint.link.mass_kg = mass_kg;
+  RobotModel robot;
+  robot.joints = {joint};
+  robot.gravity_W.setZero();
+  return robot;
+}
+
 RobotModel randomChain(int n, unsigned seed) { return randomRobot(n, seed, true); }
 
 RobotModel randomRevoluteChain(int n, unsigned seed) { return randomRobot(n, seed, false); }

@@ -14,6 +14,9 @@ namespace baton::test {
 /// is smaller than m d^2, so it is a valid equation but no possible body.
 [[nodiscard]] RobotModel link1Robot();
 
+/// A mass that slides along z, weightless: the tip is its position.
+[[nodiscard]] RobotModel slider(double mass_kg);
+
 /// A chain of n joints of mixed kinds with random geometry and random physically possible links; no friction. The same
 /// seed gives the same chain.
 [[nodiscard]] RobotModel randomChain(int n, unsigned seed);

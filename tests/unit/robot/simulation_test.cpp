@@ -43,19 +43,7 @@ double energy(const RobotModel& model, const Motion& motion) {
 
 double distance(const Motion& a, const Motion& b) { return (a.q - b.q).norm() + (a.qd - b.qd).norm(); }
 
-/// A bob of mass m that slides along z, weightless: the tip is its position.
 constexpr double kMass = 2.0, kStiffness = 800.0, kOmega = 20.0;  // omega = sqrt(K / m)
-RobotModel slider() {
-  RobotModel robot;
-  Joint joint;
-  joint.name = "slide";
-  joint.kind = JointKind::kPrismatic;
-  joint.link.mass_kg = kMass;
-  robot.joints = {joint};
-  robot.gravity_W.setZero();
-  return robot;
-}
-
 /// A spring along z from the origin, and a damper. Held: without the derivatives.
 Environment spring(bool held, double damping = 0.0) {
   return [=](const Vector3& p, const Vector3& v) {
@@ -153,7 +141,7 @@ TEST(IntegrateStep, RefusesAStateThatIsNotFiniteAndLeavesItAlone) {
 TEST(ContactFollowing, KeepsTheEnergyOfASpringThatAHeldForceFeeds) {
   // Half a swing against the spring. A force held over dt is dt/2 late: damping -K dt/2, so the energy grows by
   // exp(pi omega dt / 2). Followed, only the error of RK4 is left: a loss of (omega dt)^6 / 72 a step.
-  const RobotModel robot = slider();
+  const RobotModel robot = test::slider(kMass);
   const double swing_s = kPi / kOmega;
   const Motion start{JointVector::Zero(1), JointVector::Constant(1, 1.0)};
   const auto gain = [&](bool held, int steps) {
@@ -171,7 +159,7 @@ TEST(ContactFollowing, KeepsTheEnergyOfASpringThatAHeldForceFeeds) {
 TEST(ContactFollowing, BouncesOffAWallWithTheSpeedItCameWith) {
   // Meeting and leaving the wall inside a step costs at most the spring energy of one step's travel, (omega dt)^2 of
   // the whole, at each end; the held force adds its first-order gain to that.
-  const RobotModel robot = slider();
+  const RobotModel robot = test::slider(kMass);
   const auto gain = [&](bool held, double omega_dt) {
     const Motion start{JointVector::Constant(1, -0.01), JointVector::Constant(1, 1.0)};
     const int steps = 260.0 * 1e-3 * kOmega / omega_dt;
@@ -190,7 +178,7 @@ TEST(ContactFollowing, FollowsVelocityToo) {
   const double damping = 10.0, duration_s = 0.2;
   const double s = damping / (2.0 * kMass), w = std::sqrt(kOmega * kOmega - s * s);
   const Motion start{JointVector::Zero(1), JointVector::Constant(1, 1.0)};
-  const Motion end = simulate(slider(), start, duration_s, 200, spring(false, damping));
+  const Motion end = simulate(test::slider(kMass), start, duration_s, 200, spring(false, damping));
   const double expected = std::exp(-s * duration_s) * std::sin(w * duration_s) / w;
   EXPECT_NEAR(end.q(0), expected, 1e-8);  // (omega dt)^4 / 120 of the swing
 }

@@ -32,6 +32,7 @@ start: {position: [0.1, 0.2, 0.3], velocity: [1, 2, 4]}
 environment:
   walls:
     - {point_m: [0, 0, 0.70], normal: [0, 0, 2], stiffness_N_per_m: 200, damping_N_s_per_m: 5}
+  coupling: late
 trajectory:
   interpolation: cubic
   waypoints:
@@ -94,6 +95,8 @@ TEST(ScenarioFile, GivesEachFieldItsPlace) {
 
   ASSERT_EQ(s.walls.size(), 1u);
   EXPECT_TRUE(s.hasEnvironment());
+  EXPECT_EQ(s.coupling, Coupling::kLate);
+  EXPECT_EQ(s.armConfig().coupling, Coupling::kLate);
   EXPECT_EQ(s.walls[0].point_m, Vector3(0.0, 0.0, 0.7));
   EXPECT_EQ(s.walls[0].normal, Vector3(0.0, 0.0, 2.0));
   EXPECT_EQ(s.walls[0].stiffness_N_per_m, 200.0);
@@ -151,6 +154,7 @@ TEST(ScenarioFile, NeedsNoMoreThanARobotAStepAMotionAndAController) {
   EXPECT_EQ(s.max_missed_steps, defaults.max_missed_steps);
   EXPECT_EQ(s.late_policy, defaults.late_policy);
   EXPECT_EQ(s.late_after_s, defaults.late_after_s);
+  EXPECT_EQ(s.coupling, defaults.coupling);
   EXPECT_EQ(s.start_q, JointVector(Vector3::Zero()));
   EXPECT_EQ(s.start_qd, JointVector(Vector3::Zero()));
   EXPECT_FALSE(s.hasEnvironment());
@@ -273,6 +277,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "none"},
         BadInput{"EmptyWalls", section("  walls:", "trajectory:"), "  walls: []\n", "walls", "a list of 1 to 16",
                  "list of 0"},
+        BadInput{"UnknownCoupling", "coupling: late", "coupling: tight", "coupling", "one of derivatives, held, late",
+                 "'tight'"},
         BadInput{"NegativeStiffness", "stiffness_N_per_m: 200", "stiffness_N_per_m: -200", "- {point_m",
                  "walls[0].stiffness_N_per_m: expected a number from 0 to 1000000000 N/m", "'-200'"},
         BadInput{"NegativeDamping", "damping_N_s_per_m: 5", "damping_N_s_per_m: -5", "- {point_m", "from 0", "'-5'"},
