@@ -16,6 +16,9 @@ struct StepStamp {
   std::uint64_t step = 0;
   std::int64_t time_ns = 0;  // simulated
 };
+[[nodiscard]] inline StepStamp stampOf(std::uint64_t step, std::int64_t step_ns) {
+  return {step, static_cast<std::int64_t>(step) * step_ns};
+}
 
 /// Sets memory aside in a message's sequences, once.
 void prepare(msg::PlantState& message);

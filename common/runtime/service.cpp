@@ -31,9 +31,7 @@ Service::~Service() {
   while (!endpoints_.empty()) endpoints_.pop_back();
 }
 
-StepStamp Service::stampOf(std::uint64_t step) const {
-  return {step, static_cast<std::int64_t>(step) * scenario_.step_ns};
-}
+StepStamp Service::stampOf(std::uint64_t step) const { return baton::stampOf(step, scenario_.step_ns); }
 
 void Service::require(const std::string& topic, std::function<std::set<dds::GuidPrefix>()> matched,
                       std::vector<std::string> peers) {

@@ -58,7 +58,7 @@ void printResult(const nlohmann::ordered_json& result) {
                 static_cast<unsigned long long>(recording.at("messages")),
                 recording.at("complete").get<bool>() ? "complete" : recording.at("summary").get<std::string>().c_str());
   }
-  std::printf("logs        %s\n", result.at("folder").get<std::string>().c_str());
+  if (result.contains("folder")) std::printf("logs        %s\n", result.at("folder").get<std::string>().c_str());
 }
 
 }  // namespace baton

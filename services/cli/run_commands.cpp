@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -12,6 +13,7 @@
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/log.hpp"
+#include "runtime/monolithic_run.hpp"
 #include "runtime/paths.hpp"
 
 namespace baton {
@@ -68,6 +70,63 @@ void addRunOptions(CLI::App& command, RunRequest& request) {
       ->check(CLI::Range(0, 1000));
 }
 
+void tell(const nlohmann::ordered_json& result, bool json) {
+  if (json) {
+    std::cout << toText(result) << '\n';
+  } else {
+    printResult(result);
+  }
+}
+
+/// The whole run in this process. Returns what result.json would say, as far as it applies.
+nlohmann::ordered_json runInProcess(const std::string& scenario_name) {
+  using Clock = std::chrono::steady_clock;
+  const auto secondsSince = [](Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
+  };
+  const Clock::time_point launched = Clock::now();
+  const std::string file = findScenario(scenario_name).string();
+  const Scenario scenario = loadScenario(file);
+  for (const std::string& warning : scenario.warnings) std::fprintf(stderr, "baton: warning: %s\n", warning.c_str());
+  if (scenario.end_step == 0) {
+    throw UsageError(file + ": expected a scenario with an end (duration_s), found none");
+  }
+  MonolithicRun run(scenario);
+  ProgressLine line;
+  msg::SimStatus status;
+  status.state(msg::SIM_STATE_RUNNING);
+  status.end_step(scenario.end_step);
+  status.holder(scenario.active);
+  const double startup_s = secondsSince(launched);
+  const Clock::time_point started = Clock::now();
+  while (run.step()) {
+    constexpr std::uint64_t kShownEvery = 1000;  // steps
+    if (run.steps() % kShownEvery != 0) continue;
+    status.step(run.steps());
+    status.time_ns(stampOf(run.steps(), scenario.step_ns).time_ns);
+    status.elapsed_s(secondsSince(started));
+    line.show(progressText(status));
+  }
+  const double elapsed_s = secondsSince(started);
+  const double sim_time_s = static_cast<double>(run.steps()) * scenario.stepSeconds();
+  const bool finished = run.failure().empty();
+  return {{"scenario", scenario.name},
+          {"scenario_file", file},
+          {"state", finished ? "finished" : "aborted"},
+          {"exit_code", static_cast<int>(finished ? ExitCode::kOk : ExitCode::kAborted)},
+          {"reason", run.failure()},
+          {"step_ns", scenario.step_ns},
+          {"steps", run.steps()},
+          {"sim_time_s", sim_time_s},
+          {"elapsed_s", elapsed_s},
+          {"real_time_ratio", elapsed_s > 0.0 ? sim_time_s / elapsed_s : 0.0},
+          {"startup_s", startup_s},
+          {"missed_steps", 0},
+          {"chain_hash", std::to_string(run.chainHash())},
+          {"recording", nullptr},
+          {"swaps", nlohmann::ordered_json::array()}};
+}
+
 void up(const RunRequest& request, ExitCode& exit_code) {
   RunSession session(request, false);
   ProgressLine line;
@@ -115,11 +174,7 @@ void down(const std::string& cell, int domain, bool json, ExitCode& exit_code) {
   }
   line.show("");
   const nlohmann::ordered_json result = readResult(info.folder);
-  if (json) {
-    std::cout << toText(result) << '\n';
-  } else {
-    printResult(result);
-  }
+  tell(result, json);
   const bool is_complete = result.at("recording").is_null() || result.at("recording").at("complete").get<bool>();
   exit_code = is_complete ? ExitCode::kOk : ExitCode::kFailed;
 }
@@ -171,15 +226,23 @@ void addRunCommands(CLI::App& app, ExitCode& exit_code) {
   CLI::App* run_command = app.add_subcommand("run", "run a scenario to its end");
   addRunOptions(*run_command, *request);
   run_command->add_flag("--json", *json, "print the result as JSON");
+  const auto in_process = std::make_shared<bool>(false);
+  CLI::Option* in_process_option = run_command->add_flag(
+      "--in-process", *in_process,
+      "all parts in this process, without DDS and recording, as fast as possible: the same bytes, the same hash");
+  for (const char* other : {"--out", "--overwrite", "--no-recording", "--restarts"}) {
+    in_process_option->excludes(other);
+  }
   run_command->callback([=, &exit_code] {
+    if (*in_process) {
+      const nlohmann::ordered_json result = runInProcess(request->scenario);
+      exit_code = static_cast<ExitCode>(result.at("exit_code").get<int>());
+      return tell(result, *json);
+    }
     RunSession session(*request, true);
     exit_code = runToTheEnd(session);
     const nlohmann::ordered_json result = session.result();
-    if (*json) {
-      std::cout << toText(result) << '\n';
-    } else {
-      printResult(result);
-    }
+    tell(result, *json);
     if (result.at("state") == "not_started") {
       std::fprintf(stderr, "baton: the end of %s:\n%s", session.logFile().c_str(),
                    lastLines(session.logFile(), 8).c_str());

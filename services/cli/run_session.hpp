@@ -55,7 +55,7 @@ class RunSession {
 /// result.json of a run folder.
 [[nodiscard]] nlohmann::ordered_json readResult(const std::string& folder);
 
-/// What a person wants to know of a run that has ended.
+/// What a person wants to know of a run that has ended, from its result.json. One without a folder has no logs.
 void printResult(const nlohmann::ordered_json& result);
 
 }  // namespace baton

@@ -128,7 +128,7 @@ void LawRunner::publish(std::uint64_t step, bool commands) {
   if (has_effort || commands) {
     // Without an effort, the plant must hear so at this very step, or it would wait: an empty command says it.
     const std::size_t inputs = info_.uses_force ? 3 : 2;
-    const std::uint64_t inputs_hash = dds::chainHash(0, std::as_bytes(std::span(hashes_[slot]).first(inputs)));
+    const std::uint64_t inputs_hash = dds::inputsHash(std::span(hashes_[slot]).first(inputs));
     toMessage(service_.stampOf(step), config_.name, history_[slot], inputs_hash, message_);
     (commands ? command_out_ : shadow_out_).write(message_);
   }

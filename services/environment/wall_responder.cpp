@@ -1,7 +1,6 @@
 #include "wall_responder.hpp"
 
 #include "control/law.hpp"
-#include "environment/plane.hpp"
 
 namespace baton {
 namespace {
@@ -17,17 +16,15 @@ std::vector<std::string> readersOf(const Scenario& scenario) {
 }  // namespace
 
 WallResponder::WallResponder(Service& service)
-    : service_(service), contact_out_(service.output(dds::topics::kContact, readersOf(service.scenario()))) {
+    : service_(service),
+      contact_out_(service.output(dds::topics::kContact, readersOf(service.scenario()))),
+      answer_(service.scenario()) {
   service.input(dds::topics::kPlantState, {kPlantName},
                 [this](const msg::PlantState& message, const dds::RawSample&) { onState(message); });
 }
 
 void WallResponder::onState(const msg::PlantState& message) {
-  if (!service_.isReady() || service_.isOver() || !fromMessage(message, service_.scenario().robot.size(), state_))
-    return;
-  const Vector3 v_WE = state_.V_WE.head<3>();
-  const Contact total = planesContact(service_.scenario().walls, state_.X_WE.p, v_WE);
-  toMessage({message.step(), message.time_ns()}, total, message_);
+  if (!service_.isReady() || service_.isOver() || !answer_(message, message_)) return;
   contact_out_.write(message_);
   service_.at(message.step());
   service_.stepDone(message.step());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/service.hpp"
+#include "runtime/step_answers.hpp"
 
 namespace baton {
 
@@ -14,7 +15,7 @@ class WallResponder {
 
   Service& service_;
   dds::Writer<msg::Contact>& contact_out_;
-  RobotState state_;
+  ContactAnswer answer_;
   msg::Contact message_;
 };
 

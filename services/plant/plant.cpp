@@ -129,11 +129,11 @@ void Plant::openStep() {
   const std::uint64_t step = master_.step();
   service_.at(step);
   progress_ns_ = steadyNow();
-  contact_hash_ = command_hash_ = outgoing_hash_ = 0;
+  hashes_ = {};
   master_.needOutgoing(arbiter_.outgoingAt(step) != kBrake);
   toMessage(service_.stampOf(step), arm_.state(), nameOf(arbiter_.holder()), chain_hash_, state_message_);
   state_out_.write(state_message_);
-  state_hash_ = dds::chainHash(0, state_out_.payload());
+  hashes_.state = dds::chainHash(0, state_out_.payload());
   if (arbiter_.holder() == kBrake) {
     effort_ = arm_.brakeEffort();
     master_.commandArrived(step);
@@ -239,8 +239,7 @@ void Plant::endStep() {
   if (!arm_.move(arm_.blended(step, effort_), contact_)) {
     return abort("the motion is no longer finite: the step may be too long for the law's gains");
   }
-  const std::array<std::uint64_t, 4> hashes{state_hash_, contact_hash_, outgoing_hash_, command_hash_};
-  chain_hash_ = dds::chainHash(chain_hash_, std::as_bytes(std::span(hashes)));
+  chain_hash_ = dds::chainStep(chain_hash_, hashes_);
   if (takes_over) {
     completed_->at_step = step;
     publishDone(*completed_, completed_reason_.data(), raw_step, arm_.state().tau_applied - tau_before);

@@ -70,11 +70,8 @@ class Plant {
   Contact contact_;
   JointVector effort_;           // the holder's
   JointVector outgoing_effort_;  // at the first step of a handover
-  std::uint64_t contact_hash_ = 0;
-  std::uint64_t command_hash_ = 0;
-  std::uint64_t outgoing_hash_ = 0;
-  std::uint64_t state_hash_ = 0;
-  std::uint64_t chain_hash_ = 0;
+  dds::StepHashes hashes_;
+  std::uint64_t chain_hash_ = 0;  // of the steps before
 
   /// The process that speaks for a controller: the first to say that it is ready, until it fails.
   struct Speaker {

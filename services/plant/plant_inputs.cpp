@@ -9,7 +9,7 @@ namespace baton {
 void Plant::onContact(const msg::Contact& message, const dds::RawSample& sample) {
   if (message.step() != master_.step() || master_.hasContact()) return;
   if (!fromMessage(message, contact_)) return abort("the environment sent a contact that is not finite");
-  contact_hash_ = dds::chainHash(0, sample.payload);
+  hashes_.contact = dds::chainHash(0, sample.payload);
   master_.contactArrived(message.step());
   proceed();
 }
@@ -32,11 +32,11 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
   }
   if (from_holder) {
     effort_ = effort;
-    command_hash_ = dds::chainHash(0, sample.payload);
+    hashes_.command = dds::chainHash(0, sample.payload);
     master_.commandArrived(message.step());
   } else {
     outgoing_effort_ = effort;
-    outgoing_hash_ = dds::chainHash(0, sample.payload);
+    hashes_.outgoing_command = dds::chainHash(0, sample.payload);
     master_.outgoingCommandArrived(message.step());
   }
   proceed();

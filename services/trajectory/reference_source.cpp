@@ -3,7 +3,7 @@
 namespace baton {
 ReferenceSource::ReferenceSource(Service& service)
     : service_(service),
-      trajectory_(service.scenario().robot, service.scenario().trajectory),
+      answer_(service.scenario()),
       reference_out_(service.output(dds::topics::kReference,
                                     withRecorder(controllerNames(service.scenario()), service.scenario()))) {
   prepare(message_);
@@ -21,9 +21,7 @@ void ReferenceSource::onState(const msg::PlantState& message) {
 }
 
 void ReferenceSource::publish(std::uint64_t step) {
-  const StepStamp stamp = service_.stampOf(step);
-  trajectory_.evaluate(static_cast<double>(stamp.time_ns) * 1e-9, reference_);
-  toMessage(stamp, reference_, message_);
+  answer_(step, message_);
   reference_out_.write(message_);
 }
 

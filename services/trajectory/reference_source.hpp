@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/service.hpp"
-#include "trajectory/trajectory.hpp"
+#include "runtime/step_answers.hpp"
 
 namespace baton {
 
@@ -16,9 +16,8 @@ class ReferenceSource {
   void publish(std::uint64_t step);
 
   Service& service_;
-  Trajectory trajectory_;
+  ReferenceAnswer answer_;
   dds::Writer<msg::Reference>& reference_out_;
-  Reference reference_;
   msg::Reference message_;
   bool started_ = false;
 };

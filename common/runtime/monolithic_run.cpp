@@ -1,0 +1,86 @@
+#include "runtime/monolithic_run.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "base/error.hpp"
+
+namespace baton {
+namespace {
+
+const Scenario& checked(const Scenario& scenario) {
+  if (!scenario.swaps.empty()) {
+    throw UsageError(scenario.file + ": expected a scenario without swaps, because in one process there is nobody to " +
+                     "hand over to, found one to " + scenario.swaps.front().to);
+  }
+  if (scenario.mode == SimMode::kRealtime) {
+    throw UsageError(scenario.file + ": expected mode lockstep, because in one process nobody can be late, " +
+                     "found realtime");
+  }
+  return scenario;
+}
+
+}  // namespace
+
+MonolithicRun::MonolithicRun(const Scenario& scenario)
+    : scenario_(checked(scenario)),
+      controller_(scenario_.controller(scenario_.active)),
+      law_info_(findLaw(controller_.law)),
+      law_(law_info_.make(scenario_.robot, controller_.parameters)),
+      arm_(scenario_.robot, scenario_.armConfig()),
+      reference_answer_(scenario_),
+      effort_(JointVector::Zero(scenario_.robot.size())),
+      buffer_(std::max({dds::maxPayload<msg::PlantState>(), dds::maxPayload<msg::Reference>(),
+                        dds::maxPayload<msg::Contact>(), dds::maxPayload<msg::JointCommand>()})) {
+  if (scenario_.hasEnvironment()) contact_answer_.emplace(scenario_);
+  input_.dt_s = scenario_.stepSeconds();
+  prepare(state_);
+  prepare(reference_);
+  prepare(command_);
+  law_->reset();
+}
+
+bool MonolithicRun::step() {
+  const bool is_over = scenario_.end_step > 0 && step_ == scenario_.end_step;
+  if (is_over || !failure_.empty()) return false;
+  const int n = scenario_.robot.size();
+  const StepStamp stamp = stampOf(step_, scenario_.step_ns);
+
+  toMessage(stamp, arm_.state(), controller_.name, chain_hash_, state_);
+  reference_answer_(step_, reference_);
+  if (!fromMessage(state_, n, input_.state) || !fromMessage(reference_, n, input_.reference)) {
+    return fail("a state or a reference is not finite");
+  }
+  std::array<std::uint64_t, 3> inputs{hashOf(state_), hashOf(reference_), 0};
+  dds::StepHashes hashes{.state = inputs[0]};
+
+  Contact contact;
+  if (contact_answer_) {
+    if (!(*contact_answer_)(state_, contact_) || !fromMessage(contact_, contact)) {
+      return fail("a contact is not finite");
+    }
+    hashes.contact = inputs[2] = hashOf(contact_);
+    if (law_info_.uses_force) input_.contact = contact;
+  }
+
+  if (const LawStatus status = law_->step(input_, effort_); status != LawStatus::kOk) {
+    return fail(controller_.name + " has no effort to give: " + toString(status));
+  }
+  const std::size_t used = law_info_.uses_force ? 3 : 2;
+  toMessage(stamp, controller_.name, effort_, dds::inputsHash(std::span(inputs).first(used)), command_);
+  hashes.command = hashOf(command_);
+
+  if (!arm_.move(effort_, contact)) {
+    return fail("the motion is no longer finite: the step may be too long for the law's gains");
+  }
+  chain_hash_ = dds::chainStep(chain_hash_, hashes);
+  ++step_;
+  return true;
+}
+
+bool MonolithicRun::fail(const std::string& reason) {
+  failure_ = reason;
+  return false;
+}
+
+}  // namespace baton
