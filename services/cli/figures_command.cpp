@@ -14,6 +14,7 @@
 
 #include "control/nearest_name.hpp"
 #include "report/batch.hpp"
+#include "report/gnuplot.hpp"
 #include "report/page.hpp"
 #include "report/plot.hpp"
 #include "runtime/command_line.hpp"
@@ -32,9 +33,9 @@ struct FiguresRequest {
   bool json = false;
 };
 
-/// "27-29" and "30, 31" by each of their numbers.
+/// "27-29" and "30, 31" by each of their numbers, "co-simulation, error" by what stands before the comma.
 std::set<std::string> namesOf(const Figure& figure) {
-  std::set<std::string> names{figure.number};
+  std::set<std::string> names{figure.number, figure.number.substr(0, figure.number.find(','))};
   std::vector<int> numbers;
   bool is_range = false;
   for (std::size_t i = 0; i < figure.number.size();) {
@@ -77,11 +78,19 @@ std::vector<fs::path> scenariosOf(const std::vector<Figure>& figures) {
   std::vector<fs::path> files;
   for (const Figure& figure : figures) {
     for (const FigureRun& run : figure.runs) {
-      const fs::path file = findScenario("report/" + run.scenario);
+      const fs::path file = findScenario(figure.folder + "/" + run.scenario);
       if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
     }
   }
   return files;
+}
+
+/// What is being drawn, and how much of it is done.
+void showProgress(const Figure& figure, double part) {
+  static const bool is_terminal = isatty(STDERR_FILENO) != 0;
+  if (!is_terminal) return;
+  std::fprintf(stderr, "\r\033[Kdrawing figure %s", figure.number.c_str());
+  if (part > 0.0) std::fprintf(stderr, ": %.0f %%", 100.0 * part);
 }
 
 FigureResult resultOf(const Figure& figure, const std::map<std::string, BatchRun>& runs, const fs::path& out) {
@@ -98,12 +107,13 @@ FigureResult resultOf(const Figure& figure, const std::map<std::string, BatchRun
     traces.push_back(readTrace(done.recording));
     labelled.push_back({figure.runs.size() > 1 ? run.label : "", &traces.back()});
   }
+  const auto add = [&](Check&& check, const std::string& label) {
+    if (figure.runs.size() > 1 && !label.empty()) check.what = label + ": " + check.what;
+    result.checks.push_back(std::move(check));
+  };
   for (const CheckRequest& request : figure.checks) {
     const std::string& label = figure.runs[static_cast<std::size_t>(request.run)].label;
-    for (Check& check : runCheck(request, traces)) {
-      if (figure.runs.size() > 1 && !label.empty() && !request.other) check.what = label + ": " + check.what;
-      result.checks.push_back(std::move(check));
-    }
+    for (Check& check : runCheck(request, traces)) add(std::move(check), request.other ? "" : label);
   }
   for (const LabelledRun& run : labelled) {
     result.checks.push_back(followsScenario(*run.trace));
@@ -113,6 +123,14 @@ FigureResult resultOf(const Figure& figure, const std::map<std::string, BatchRun
     const std::string stem = figure.runs.front().scenario + "_" + kind;
     draw(out / stem, figure.title, kind, labelled);
     result.drawings.push_back(stem);
+  }
+  for (const ChartRequest& request : figure.charts) {
+    ChartResult made = makeChart(request, traces, [&](double part) { showProgress(figure, part); });
+    const FigureRun& base = figure.runs[static_cast<std::size_t>(request.run)];
+    const std::string stem = base.scenario + "_" + request.name;
+    draw(out / stem, figure.title, made.chart);
+    result.drawings.push_back(stem);
+    for (Check& check : made.checks) add(std::move(check), base.label);
   }
   return result;
 }
@@ -142,8 +160,8 @@ Json toJson(const FigureResult& result) {
 }
 
 void print(const FigureResult& result) {
-  std::printf("%-10s %-58s claim %-14s %s\n", result.figure.number.c_str(), result.figure.title.c_str(),
-              toString(result.verdict()),
+  const std::string claim = result.figure.is_study ? "" : std::string("claim ") + toString(result.verdict());
+  std::printf("%-25s %-58s %-20s %s\n", result.figure.number.c_str(), result.figure.title.c_str(), claim.c_str(),
               !result.failure.empty() ? "NOT RUN"
               : result.agrees()       ? "agrees with theory"
                                       : "DIFFERS FROM THEORY");
@@ -170,12 +188,11 @@ ExitCode figures(FiguresRequest request) {
     runs.emplace(name, std::move(run));
   }
   std::vector<FigureResult> results;
-  const bool is_terminal = isatty(STDERR_FILENO) != 0;
   for (const Figure& figure : wanted) {
-    if (is_terminal) std::fprintf(stderr, "\r\033[Kdrawing figure %s", figure.number.c_str());
+    showProgress(figure, 0.0);
     results.push_back(resultOrFailure(figure, runs, out));
   }
-  if (is_terminal) std::fprintf(stderr, "\r\033[K");
+  if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K");
   facts.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   writePage(out, results, list.errata, facts);
 

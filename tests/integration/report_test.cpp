@@ -64,6 +64,26 @@ TEST(Report, AFigureIsRunDrawnAndHeldAgainstTheory) {
   EXPECT_EQ(again.at("figures"), made.at("figures"));
 }
 
+TEST(Report, TheStudyOfTheCouplingAgreesWithTheory) {
+  const Bench bench;
+  const fs::path out = bench.folder() / "figures";
+  const Finished studied = bench.baton({"figures", "--only", "co-simulation", "--out", out.string(), "--json"});
+  ASSERT_EQ(studied.exit_code, 0) << studied.out << studied.err;
+  const nlohmann::json made = nlohmann::json::parse(studied.out);
+  ASSERT_EQ(made.at("figures").size(), 3U);
+  for (const auto& figure : made.at("figures")) {
+    EXPECT_TRUE(figure.at("agrees")) << figure;
+    EXPECT_GE(figure.at("checks").size(), 7U);
+  }
+  const std::string page = readFile(out / "index.html");
+  EXPECT_NE(page.find("Beyond the report"), std::string::npos);
+  for (const char* chart : {"spring_derivatives_coupling_energy", "damped_spring_coupling_stability",
+                            "arm_in_springs_coupling_error", "touch_coupling_error"}) {
+    EXPECT_NE(page.find(std::string(chart) + ".svg"), std::string::npos) << chart;
+    EXPECT_NE(readFile(out / (std::string(chart) + ".svg")).find("</svg>"), std::string::npos) << chart;
+  }
+}
+
 TEST(Report, AFigureThatIsNotThereIsNamed) {
   const Bench bench;
   const Finished refused = bench.baton({"figures", "--only", "99", "--out", (bench.folder() / "figures").string()});

@@ -37,24 +37,50 @@ CheckRequest readCheck(const YamlNode& node, std::size_t runs) {
   return read;
 }
 
+ChartRequest readChart(const YamlNode& node, std::size_t runs) {
+  const YamlMap chart = node.map({"name", "run"});
+  return {.name = known(chart["name"], "chart", chartNames()),
+          .run = static_cast<int>(chart.integerOr("run", 0, static_cast<std::int64_t>(runs) - 1, 0))};
+}
+
+/// What figures and studies have in common.
+Figure readCommon(const YamlMap& map) {
+  Figure figure;
+  figure.title = map["title"].text();
+  figure.theory = map["theory"].text(kMaxText);
+  figure.finding = map["finding"].text(kMaxText);
+  for (const YamlNode& run : map["runs"].list(1, 8)) figure.runs.push_back(readRun(run));
+  for (const YamlNode& check : map["checks"].list(1, kMaxEntries)) {
+    figure.checks.push_back(readCheck(check, figure.runs.size()));
+  }
+  return figure;
+}
+
 Figure readFigure(const YamlNode& node) {
   const YamlMap map =
       node.map({"figure", "title", "claim", "theory", "finding", "claim_holds", "runs", "plots", "checks"});
-  Figure figure;
+  Figure figure = readCommon(map);
   figure.number = map["figure"].text();
-  figure.title = map["title"].text();
   figure.claim = map["claim"].text(kMaxText);
-  figure.theory = map["theory"].text(kMaxText);
-  figure.finding = map["finding"].text(kMaxText);
   figure.verdict = map["claim_holds"].oneOf<ClaimVerdict>({{"true", ClaimVerdict::kHolds},
                                                            {"partly", ClaimVerdict::kPartly},
                                                            {"false", ClaimVerdict::kWrong},
                                                            {"none", ClaimVerdict::kNone}});
-  for (const YamlNode& run : map["runs"].list(1, 8)) figure.runs.push_back(readRun(run));
+  figure.folder = "report";
   for (const YamlNode& plot : map["plots"].list(1, 8)) figure.plots.push_back(known(plot, "plot", plotKinds()));
-  for (const YamlNode& check : map["checks"].list(1, kMaxEntries)) {
-    figure.checks.push_back(readCheck(check, figure.runs.size()));
-  }
+  return figure;
+}
+
+Figure readStudy(const YamlNode& node) {
+  const YamlMap map =
+      node.map({"study", "title", "question", "theory", "finding", "folder", "runs", "charts", "checks"});
+  Figure figure = readCommon(map);
+  figure.is_study = true;
+  figure.number = map["study"].text();
+  figure.claim = map["question"].text(kMaxText);
+  figure.verdict = ClaimVerdict::kNone;
+  figure.folder = map["folder"].name();
+  for (const YamlNode& chart : map["charts"].list(1, 8)) figure.charts.push_back(readChart(chart, figure.runs.size()));
   return figure;
 }
 
@@ -69,9 +95,10 @@ Erratum readErratum(const YamlNode& node) {
 }  // namespace
 
 FigureList readFigureList(const std::filesystem::path& file) {
-  const YamlMap map = YamlNode::parse(file.string(), readYamlFile(file.string())).map({"figures", "errata"});
+  const YamlMap map = YamlNode::parse(file.string(), readYamlFile(file.string())).map({"figures", "studies", "errata"});
   FigureList list;
   for (const YamlNode& figure : map["figures"].list(1, kMaxEntries)) list.figures.push_back(readFigure(figure));
+  for (const YamlNode& study : map["studies"].list(0, kMaxEntries)) list.figures.push_back(readStudy(study));
   for (const YamlNode& erratum : map["errata"].list(0, kMaxEntries)) list.errata.push_back(readErratum(erratum));
   return list;
 }

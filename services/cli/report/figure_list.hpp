@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "study.hpp"
 #include "theory.hpp"
 
 namespace baton {
@@ -18,19 +19,23 @@ enum class ClaimVerdict {
 };
 
 struct FigureRun {
-  std::string scenario;  // a file's stem below deploy/scenarios/report
+  std::string scenario;  // a file's stem in the figure's folder
   std::string label;     // in legends
 };
 
+/// A figure of the report, or one of a study of ours, which has a question instead of a claim and may have charts.
 struct Figure {
-  std::string number;  // as the report numbers it: "30, 31, 32"
+  bool is_study = false;
+  std::string number;  // as the report numbers it: "30, 31, 32"; a study's name and part: "co-simulation, error"
   std::string title;
-  std::string claim;    // what the report says
+  std::string claim;    // what the report says, or what the study asks
   std::string theory;   // what is to be expected, with the equation
   std::string finding;  // what follows for the claim
   ClaimVerdict verdict = ClaimVerdict::kHolds;
+  std::string folder;  // of the scenarios, below deploy/scenarios
   std::vector<FigureRun> runs;
   std::vector<std::string> plots;
+  std::vector<ChartRequest> charts;
   std::vector<CheckRequest> checks;
 };
 
@@ -42,7 +47,7 @@ struct Erratum {
 };
 
 struct FigureList {
-  std::vector<Figure> figures;
+  std::vector<Figure> figures;  // the report's, then those of studies
   std::vector<Erratum> errata;
 };
 

@@ -49,6 +49,12 @@ constexpr const char* kHead = R"(<!doctype html>
 </style>
 )";
 
+constexpr const char* kStudiesHead =
+    "<h2 id='studies'>Beyond the report</h2>\n"
+    "<p>Questions of our own. Each starts from recordings of the distributed system, like the figures above; its "
+    "charts "
+    "are computed by running the same scenario again in one process, many times over, with a number varied.</p>\n";
+
 const char* className(ClaimVerdict verdict) {
   switch (verdict) {
     case ClaimVerdict::kHolds: return "holds";
@@ -84,8 +90,8 @@ void writeSummary(std::ofstream& page, const std::vector<FigureResult>& results)
   page << "<table><tr><th>figure<th><th>the report's claim<th>our runs\n";
   for (const FigureResult& result : results) {
     page << fmt::format("<tr><td><a href='#{}'>{}</a><td>{}<td>{}<td>{}\n", anchorOf(result.figure),
-                        escaped(result.figure.number), escaped(result.figure.title), verdictTag(result),
-                        agreement(result));
+                        escaped(result.figure.number), escaped(result.figure.title),
+                        result.figure.is_study ? "beyond the report" : verdictTag(result), agreement(result));
   }
   page << "</table>\n";
 }
@@ -113,13 +119,14 @@ void writeFigure(std::ofstream& page, const FigureResult& result) {
                       std::isdigit(static_cast<unsigned char>(figure.number.front())) != 0 ? "Figure " : "",
                       escaped(figure.number), escaped(figure.title));
   page << "<dl>\n";
-  page << fmt::format("<dt>the report says<dd>{}\n", escaped(figure.claim));
+  page << fmt::format("<dt>{}<dd>{}\n", figure.is_study ? "question" : "the report says", escaped(figure.claim));
   page << fmt::format("<dt>theory predicts<dd>{}\n", escaped(figure.theory));
-  page << fmt::format("<dt>finding<dd>{} {}\n", verdictTag(result),
+  page << fmt::format("<dt>finding<dd>{} {}\n", figure.is_study ? "" : verdictTag(result),
                       result.agrees() ? escaped(figure.finding) : "Our runs do not agree with theory here.");
   std::string runs;
   for (const FigureRun& run : figure.runs) {
-    runs += fmt::format("{}<code>deploy/baton run report/{}</code>", runs.empty() ? "" : "<br>", escaped(run.scenario));
+    runs += fmt::format("{}<code>deploy/baton run {}/{}</code>", runs.empty() ? "" : "<br>", escaped(figure.folder),
+                        escaped(run.scenario));
   }
   page << fmt::format("<dt>{}<dd>{}\n</dl>\n", figure.runs.size() == 1 ? "scenario" : "scenarios", runs);
   if (!result.failure.empty()) {
@@ -176,8 +183,17 @@ void writePage(const std::filesystem::path& folder, const std::vector<FigureResu
   page << fmt::format("<p>{} runs, {} of them from an earlier time; {:.0f} s. Made by {}.</p>\n", facts.runs,
                       facts.reused, facts.elapsed_s, escaped(facts.build));
   writeSummary(page, results);
-  for (const FigureResult& result : results) writeFigure(page, result);
+  const auto writeAll = [&](bool studies) {
+    for (const FigureResult& result : results) {
+      if (result.figure.is_study == studies) writeFigure(page, result);
+    }
+  };
+  writeAll(false);
   writeErrata(page, errata);
+  if (std::any_of(results.begin(), results.end(), [](const auto& result) { return result.figure.is_study; })) {
+    page << kStudiesHead;
+    writeAll(true);
+  }
   page << "</html>\n";
   page.close();
   if (!page) throw UnavailableError("cannot write " + file.string() + ": expected space and the right to write there");

@@ -1,20 +1,17 @@
 #include "plot.hpp"
 
 #include <spdlog/fmt/fmt.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <optional>
+#include <sstream>
 
 #include "base/error.hpp"
 #include "control/nearest_name.hpp"
+#include "gnuplot.hpp"
 #include "theory.hpp"
 
 namespace baton {
@@ -148,20 +145,9 @@ std::optional<double> firstContact(const Trace& trace) {
   return std::nullopt;
 }
 
-const char* const kColours[] = {"#1f6fb4", "#c8452c", "#2c8c4a", "#8b5ab5", "#b5852a"};
 constexpr const char* kDesiredColour = "#555555";
 
-/// In single quotes gnuplot takes text as it is; in double quotes it would run what stands in backquotes.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') result += c;
-    result += std::iscntrl(static_cast<unsigned char>(c)) != 0 ? ' ' : c;
-  }
-  return result + "'";
-}
-
-void writeMarks(std::ofstream& script, const std::vector<LabelledRun>& runs) {
+void writeMarks(std::ostream& script, const std::vector<LabelledRun>& runs) {
   int tag = 1;
   const auto mark = [&](double time_s, const std::string& text, const char* colour) {
     script << fmt::format("set arrow {} from {},graph 0 to {},graph 1 nohead lc rgb '{}' dt 3\n", tag, time_s, time_s,
@@ -204,72 +190,47 @@ std::string yRange(const Panel& panel) {
   return is_flat ? fmt::format("set yrange [{}:{}]\n", low - 1.0, low + 1.0) : "set autoscale y\n";
 }
 
-void writeScript(const fs::path& stem, const std::string& title, const std::vector<Panel>& all,
-                 const std::vector<LabelledRun>& runs) {
-  std::ofstream script(stem.string() + ".gp", std::ios::binary);
-  script.precision(9);
-  script << "# Drawn by baton figures; run gnuplot on this file to draw it again.\nset encoding utf8\n";
+std::string dataOf(const std::vector<Panel>& all) {
+  std::ostringstream data;
+  data.precision(9);
   for (std::size_t p = 0; p < all.size(); ++p) {
     for (std::size_t c = 0; c < all[p].curves.size(); ++c) {
       const Curve& curve = all[p].curves[c];
-      script << fmt::format("$data_{}_{} << end\n", p, c);
+      data << fmt::format("$data_{}_{} << end\n", p, c);
       for (const Eigen::Index k : drawnSteps(curve.y)) {
-        script << curve.trace->time(k) << ' ';
+        data << curve.trace->time(k) << ' ';
         if (std::isfinite(curve.y(k))) {
-          script << curve.y(k) << '\n';
+          data << curve.y(k) << '\n';
         } else {
-          script << "nan\n";
+          data << "nan\n";
         }
       }
-      script << "end\n";
+      data << "end\n";
     }
   }
-  const auto height = 90 + 190 * all.size();
-  const std::string name = stem.filename().string();
-  for (const auto& [terminal, extension] :
-       {std::pair{"svg enhanced background 'white' font 'Helvetica,12'", "svg"},
-        std::pair{"pngcairo enhanced background 'white' font 'Helvetica,11'", "png"}}) {
-    script << fmt::format("set terminal {} size 860,{}\nset output {}\n", terminal, height,
-                          quoted(name + "." + extension));
-    script << fmt::format("set multiplot layout {},1 title {} noenhanced\n", all.size(), quoted(title));
-    script << "set grid lc rgb '#dddddd'\nset key outside right top samplen 2\nset lmargin 12\n";
-    writeMarks(script, runs);
-    for (std::size_t p = 0; p < all.size(); ++p) {
-      script << fmt::format("set ylabel {}\n", quoted(all[p].y_label)) << yRange(all[p]);
-      script << (p + 1 == all.size() ? "set xlabel 'time [s]'\n" : "set xlabel ''\n");
-      script << "plot ";
-      for (std::size_t c = 0; c < all[p].curves.size(); ++c) {
-        const Curve& curve = all[p].curves[c];
-        const char* colour = curve.is_desired ? kDesiredColour : kColours[curve.colour % std::size(kColours)];
-        script << fmt::format("{}$data_{}_{} using 1:2 with lines lc rgb '{}' lw {} dt {} title {} noenhanced",
-                              c == 0 ? "" : ", ", p, c, colour, curve.is_desired ? "1.2" : "1.6",
-                              curve.is_desired ? "2" : "1", quoted(curve.label));
-      }
-      script << '\n';
-    }
-    script << "unset multiplot\nunset output\nreset\n";
-  }
-  script.close();
-  if (!script) throw UnavailableError("cannot write " + stem.string() + ".gp");
+  return data.str();
 }
 
-/// Lets gnuplot work on `argument` in `folder`.
-void runGnuplot(const fs::path& folder, const std::string& argument) {
-  const pid_t pid = fork();
-  if (pid == 0) {
-    if (chdir(folder.c_str()) != 0) _exit(126);
-    if (argument == "--version") dup2(STDERR_FILENO, STDOUT_FILENO);
-    execlp("gnuplot", "gnuplot", argument.c_str(), nullptr);
-    _exit(127);
+std::string commandsFor(const std::string& title, const std::vector<Panel>& all, const std::vector<LabelledRun>& runs) {
+  std::ostringstream commands;
+  commands << fmt::format("set multiplot layout {},1 title {} noenhanced\n", all.size(), quoted(title));
+  commands << "set grid lc rgb '#dddddd'\nset key outside right top samplen 2\nset lmargin 12\n";
+  writeMarks(commands, runs);
+  for (std::size_t p = 0; p < all.size(); ++p) {
+    commands << fmt::format("set ylabel {}\n", quoted(all[p].y_label)) << yRange(all[p]);
+    commands << (p + 1 == all.size() ? "set xlabel 'time [s]'\n" : "set xlabel ''\n");
+    commands << "plot ";
+    for (std::size_t c = 0; c < all[p].curves.size(); ++c) {
+      const Curve& curve = all[p].curves[c];
+      const char* colour = curve.is_desired ? kDesiredColour : kCurveColours[curve.colour % std::size(kCurveColours)];
+      commands << fmt::format("{}$data_{}_{} using 1:2 with lines lc rgb '{}' lw {} dt {} title {} noenhanced",
+                              c == 0 ? "" : ", ", p, c, colour, curve.is_desired ? "1.2" : "1.6",
+                              curve.is_desired ? "2" : "1", quoted(curve.label));
+    }
+    commands << '\n';
   }
-  int how = 0;
-  if (pid < 0 || waitpid(pid, &how, 0) != pid) throw UnavailableError("cannot start gnuplot");
-  if (WIFEXITED(how) && WEXITSTATUS(how) == 127) {
-    throw UnavailableError("gnuplot is missing: deploy/setup installs it (Debian: gnuplot-nox)");
-  }
-  if (!WIFEXITED(how) || WEXITSTATUS(how) != 0) {
-    throw UnavailableError("gnuplot failed on " + (folder / argument).string() + ": run it by hand to see why");
-  }
+  commands << "unset multiplot\n";
+  return commands.str();
 }
 
 }  // namespace
@@ -282,10 +243,8 @@ const std::vector<std::string>& plotKinds() {
 
 void draw(const fs::path& stem, const std::string& title, const std::string& kind,
           const std::vector<LabelledRun>& runs) {
-  writeScript(stem, title, panels(kind, runs), runs);
-  runGnuplot(stem.parent_path(), stem.filename().string() + ".gp");
+  const std::vector<Panel> all = panels(kind, runs);
+  drawScript(stem, {860, 90 + 190 * all.size()}, dataOf(all), commandsFor(title, all, runs));
 }
-
-void expectGnuplot() { runGnuplot(fs::temp_directory_path(), "--version"); }
 
 }  // namespace baton

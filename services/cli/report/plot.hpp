@@ -23,7 +23,4 @@ struct LabelledRun {
 void draw(const std::filesystem::path& stem, const std::string& title, const std::string& kind,
           const std::vector<LabelledRun>& runs);
 
-/// Throws UnavailableError when gnuplot is missing, before anybody has waited for what it is to draw.
-void expectGnuplot();
-
 }  // namespace baton

@@ -44,6 +44,8 @@ constexpr Entry kChecks[] = {
     {"force_goal", theory::forceGoal},
     {"force_drift", theory::forceDrift},
     {"parallel_goal", theory::parallelGoal},
+    {"same_bytes_in_one_process", theory::sameBytesInOneProcess},
+    {"coupling_growth", theory::couplingGrowth},
 };
 
 const Trace& runCalled(const std::string& check, int index, const std::vector<Trace>& runs) {

@@ -117,4 +117,8 @@ using Checks = std::vector<Check>;
 [[nodiscard]] Checks forceDrift(const Inputs& in);
 [[nodiscard]] Checks parallelGoal(const Inputs& in);
 
+// theory_coupling.cpp
+[[nodiscard]] Checks sameBytesInOneProcess(const Inputs& in);
+[[nodiscard]] Checks couplingGrowth(const Inputs& in);
+
 }  // namespace baton::theory

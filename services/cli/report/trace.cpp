@@ -45,6 +45,7 @@ class Filler {
     make(trace.h_d, 6);
     trace.h_e = Eigen::MatrixXd::Zero(6, steps);
     trace.holders.resize(static_cast<std::size_t>(steps));
+    trace.chain.resize(static_cast<std::size_t>(steps));
     actual_.resize(static_cast<std::size_t>(steps));
   }
 
@@ -58,6 +59,7 @@ class Filler {
     actual_[static_cast<std::size_t>(k)] = toEigen(state.tip_orientation());
     trace_.zyz.col(k) = zyzFromRotation(actual_[static_cast<std::size_t>(k)].toRotationMatrix());
     trace_.holders[static_cast<std::size_t>(k)] = state.holder().c_str();
+    trace_.chain[static_cast<std::size_t>(k)] = state.chain_hash();
   }
   void operator()(const msg::Reference& reference) {
     const Eigen::Index k = column(reference.step());

@@ -30,6 +30,7 @@ struct Trace {
   Eigen::MatrixXd h_e;          // wrench the tip exerts on the environment, 6 x steps; zero where none was recorded
   Eigen::MatrixXd h_d;          // desired wrench, 6 x steps
   std::vector<std::string> holders;
+  std::vector<std::uint64_t> chain;     // hash of all payloads of the loop up to the step before
   std::vector<msg::SwapOutcome> swaps;  // those that took place, in order
   std::uint64_t missed_steps = 0;
   bool is_complete = false;  // by the recording's own certificate

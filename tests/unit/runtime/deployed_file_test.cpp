@@ -31,28 +31,30 @@ TEST(DeployedScenarios, AllLoadAndAreNamedAfterTheirFiles) {
   EXPECT_GE(count, 40u);  // it did go into report/
 }
 
-/// The scenarios' names below deploy/scenarios/report.
-std::set<std::string> reportScenarios() {
+/// The scenarios' names in a folder below deploy/scenarios.
+std::set<std::string> scenariosIn(const std::string& folder) {
   std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(deployPath("scenarios/report"))) {
+  for (const auto& entry : std::filesystem::directory_iterator(deployPath("scenarios/" + folder))) {
     names.insert(entry.path().stem().string());
   }
   return names;
 }
 
 TEST(DeployedReport, RunsToAnEndAndIsRecorded) {
-  for (const std::string& name : reportScenarios()) {
-    SCOPED_TRACE(name);
-    const Scenario s = loadScenario(deployPath("scenarios/report/" + name + ".yaml"));
-    EXPECT_GT(s.end_step, 0u);
-    EXPECT_TRUE(s.recording.enabled);
-    EXPECT_EQ(s.mode, SimMode::kLockstep);
-    EXPECT_EQ(s.rate, 0.0);  // as fast as possible
+  for (const std::string folder : {"report", "cosim"}) {
+    for (const std::string& name : scenariosIn(folder)) {
+      SCOPED_TRACE(name);
+      const Scenario s = loadScenario(deployPath("scenarios/" + folder + "/" + name + ".yaml"));
+      EXPECT_GT(s.end_step, 0u);
+      EXPECT_TRUE(s.recording.enabled);
+      EXPECT_EQ(s.mode, SimMode::kLockstep);
+      EXPECT_EQ(s.rate, 0.0);  // as fast as possible
+    }
   }
 }
 
 TEST(DeployedReport, StartsEachScenarioByNamingItsFigure) {
-  for (const std::string& name : reportScenarios()) {
+  for (const std::string& name : scenariosIn("report")) {
     SCOPED_TRACE(name);
     std::istringstream lines(readYamlFile(deployPath("scenarios/report/" + name + ".yaml")));
     std::string head;
@@ -65,7 +67,7 @@ TEST(DeployedReport, StartsEachScenarioByNamingItsFigure) {
 
 TEST(DeployedReport, ShowsEveryScenarioInAFigureAndHasAllThatItShows) {
   const std::string file = deployPath("figures/report.yaml");
-  const YamlMap list = YamlNode::parse(file, readYamlFile(file)).map({"figures", "errata"});
+  const YamlMap list = YamlNode::parse(file, readYamlFile(file)).map({"figures", "studies", "errata"});
   std::set<std::string> shown;
   for (const YamlNode& node : list["figures"].list(1, 100)) {
     const YamlMap figure =
@@ -79,7 +81,20 @@ TEST(DeployedReport, ShowsEveryScenarioInAFigureAndHasAllThatItShows) {
       shown.insert(run.map({"scenario", "label"})["scenario"].text());
     }
   }
-  EXPECT_EQ(shown, reportScenarios());
+  EXPECT_EQ(shown, scenariosIn("report"));
+  std::set<std::string> studied;
+  for (const YamlNode& node : list["studies"].list(1, 100)) {
+    const YamlMap study =
+        node.map({"study", "title", "question", "theory", "finding", "folder", "runs", "charts", "checks"});
+    for (const char* text : {"study", "title", "question", "theory", "finding"}) {
+      EXPECT_FALSE(study[text].text().empty());
+    }
+    EXPECT_EQ(study["folder"].text(), "cosim");
+    for (const YamlNode& run : study["runs"].list(1, 10)) {
+      studied.insert(run.map({"scenario", "label"})["scenario"].text());
+    }
+  }
+  EXPECT_EQ(studied, scenariosIn("cosim"));
   for (const YamlNode& erratum : list["errata"].list(1, 100)) {
     for (const auto& [key, value] : erratum.entries()) EXPECT_FALSE(value.text().empty()) << key;
     EXPECT_EQ(erratum.map({"where", "printed", "right", "evidence"}).node().entries().size(), 4u);
