@@ -25,6 +25,9 @@ class CellClient {
 
   static constexpr std::chrono::seconds kRecorderPatience{3};
 
+  /// Somebody may be stopped or gone: what the others say is worth more than the wait.
+  static constexpr std::chrono::seconds kStatusPatience{5};
+
   explicit CellClient(const RunInfo& info);
 
   /// The run in a cell of this machine. Throws UnavailableError, listing what runs, when there is none.

@@ -32,8 +32,7 @@ std::map<std::string, T> latestByName(CellClient& client, const dds::Topic<T>& t
     const auto latest = byName(all);
     return std::all_of(expected.begin(), expected.end(), [&](const auto& name) { return latest.contains(name); });
   };
-  // Somebody may be stopped: what the others say is worth more than the wait.
-  return byName(client.collect<T>(topic, hasAll, std::chrono::seconds(5)));
+  return byName(client.collect<T>(topic, hasAll, CellClient::kStatusPatience));
 }
 
 }  // namespace baton

@@ -13,6 +13,8 @@
 #include "runtime/json.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/service_options.hpp"
+#include "runtime/timing_json.hpp"
+#include "timing_text.hpp"
 
 namespace baton {
 namespace {
@@ -46,6 +48,8 @@ void status(const Target& target) {
   CellClient client(CellClient::find(target.domain, target.cell));
   const Scenario scenario = loadScenario(keptScenario(client.info()), keptRobot(client.info()));
   const msg::SimStatus sim = simStatus(client);
+  const Json timing =
+      toJson(client.latest(dds::topics::kTimingStatus, CellClient::kStatusPatience).value_or(msg::TimingStatus{}));
   std::vector<std::string> expected = serviceNames(scenario);
   if (client.info().recording.empty()) std::erase(expected, kRecorderName);
   const auto services = latestByName(client, dds::topics::kServiceStatus, expected);
@@ -63,6 +67,7 @@ void status(const Target& target) {
               {"holder", sim.holder().c_str()},
               {"waiting_for", sim.waiting_for().c_str()},
               {"missed_steps", sim.missed_steps()},
+              {"timing", timing},
               {"recording", client.info().recording},
               {"services", Json::array()}};
     for (const auto& [name, service] : services) {
@@ -83,6 +88,7 @@ void status(const Target& target) {
               sim.mode() == msg::SIM_MODE_REALTIME ? "realtime" : "lockstep",
               sim.rate() > 0.0 ? (" at rate " + std::to_string(sim.rate())).c_str() : " as fast as possible",
               sim.holder().size() > 0 ? sim.holder().c_str() : "the brake");
+  if (const std::string text = timingText(timing); !text.empty()) std::printf("%s\n", text.c_str());
   if (sim.waiting_for().size() > 0) std::printf("waits for %s\n", sim.waiting_for().c_str());
   for (const auto& [name, service] : services) {
     std::printf("  %-16s %-12s %-9s pid %-8d %s\n", name.c_str(), service.role().c_str(), toString(service.state()),

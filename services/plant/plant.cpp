@@ -47,6 +47,7 @@ Plant::Plant(Service& service)
       state_out_(service.output(dds::topics::kPlantState, servicesBut(kPlantName, scenario_))),
       reply_out_(service.output(dds::topics::kSimReply)),
       status_out_(service.output(dds::topics::kSimStatus, servicesBut(kPlantName, scenario_))),
+      timing_out_(service.output(dds::topics::kTimingStatus)),
       plan_out_(service.output(dds::topics::kSwapPlan, withRecorder(controllerNames(scenario_), scenario_))),
       outcome_out_(service.output(dds::topics::kSwapOutcome, withRecorder({}, scenario_))) {
   prepare(state_message_);
@@ -129,6 +130,8 @@ void Plant::openStep() {
   const std::uint64_t step = master_.step();
   service_.at(step);
   progress_ns_ = steadyNow();
+  timing_.opened(progress_ns_, master_.phase() != SimPhase::kPaused);
+  keeps_torque_ = false;
   hashes_ = {};
   master_.needOutgoing(arbiter_.outgoingAt(step) != kBrake);
   toMessage(service_.stampOf(step), arm_.state(), nameOf(arbiter_.holder()), chain_hash_, state_message_);
@@ -166,10 +169,15 @@ void Plant::memberFailed(int member, const char* reason) {
   const bool was_outgoing = member == arbiter_.outgoingAt(step);
   arbiter_.memberFailed(member, step, reason);
   if (was_holder && !master_.hasCommand()) {
-    effort_ = arm_.holdingEffort(step);  // the open step is its own still: the joints keep their torque for it
+    keepTorque();  // the open step is its own still
     master_.commandArrived(step);
   }
   if (was_outgoing) master_.needOutgoing(false);
+}
+
+void Plant::keepTorque() {
+  effort_ = arm_.holdingEffort(master_.step());
+  keeps_torque_ = true;
 }
 
 void Plant::proceed() {
@@ -178,8 +186,9 @@ void Plant::proceed() {
     considerSwap();
     if (master_.hold() != Hold::kNone) return;
     constexpr std::int64_t kCatchUp_ns = 100'000'000;  // what a busy machine may cost; more is a stall
-    if (!pacer_.isDue(master_.step() + 1, steadyNow())) return armTimer();
-    pacer_.forgive(master_.step() + 1, steadyNow(), kCatchUp_ns);
+    const std::int64_t now_ns = steadyNow();
+    if (!pacer_.isDue(master_.step() + 1, now_ns)) return armTimer();
+    pacer_.forgive(master_.step() + 1, now_ns, kCatchUp_ns);
     endStep();
     if (arbiter_.holder() == kBrake && !scenario_.hasEnvironment()) {
       // Nobody has to answer: the steps would follow each other for ever in this call. Others get their turn in
@@ -195,8 +204,10 @@ void Plant::proceed() {
 
 void Plant::tick() {
   if (master_.phase() != SimPhase::kRunning) return;
+  const std::int64_t now_ns = steadyNow();
+  const std::optional<std::int64_t> due_ns = pacer_.deadline(master_.step() + 1);
   // A timer that was armed anew may have been on its way already.
-  if (!pacer_.isDue(master_.step() + 1, steadyNow())) return armTimer();
+  if (due_ns && now_ns < *due_ns) return armTimer();
   considerSwap();
   const Hold missing = master_.inputsHold();
   if (missing == Hold::kNone) {
@@ -207,7 +218,7 @@ void Plant::tick() {
     if (give_up) {
       effort_ = arm_.brakeEffort();
     } else if (!master_.hasCommand()) {
-      effort_ = arm_.holdingEffort(master_.step());
+      keepTorque();
     }
     if (give_up && !master_.hasCommand() && missing != Hold::kContact) {
       service_.event(msg::SEVERITY_ERROR, "missed", nameOf(arbiter_.holder()) + " was silent for too many steps");
@@ -218,6 +229,7 @@ void Plant::tick() {
                      "the environment is silent: the brake holds until it speaks again");
     }
   }
+  timing_.ticked(now_ns - due_ns.value_or(now_ns), keeps_torque_);
   endStep();
   armTimer();
 }

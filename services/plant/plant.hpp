@@ -14,6 +14,7 @@
 
 #include "control/arm.hpp"
 #include "runtime/service.hpp"
+#include "step_timing.hpp"
 #include "time/baton_arbiter.hpp"
 #include "time/pacer.hpp"
 #include "time/step_master.hpp"
@@ -35,10 +36,11 @@ class Plant {
 
   // The run.
   void startWhenAllAreReady();
-  void proceed();   // lockstep: end every step that may end
-  void tick();      // realtime: end the step because its time is over
-  void endStep();   // move the arm over the open step and open the next
-  void openStep();  // publish the state of the step that has just opened
+  void proceed();     // lockstep: end every step that may end
+  void tick();        // realtime: end the step because its time is over
+  void keepTorque();  // nobody commands the open step: the joints feel what they felt before
+  void endStep();     // move the arm over the open step and open the next
+  void openStep();    // publish the state of the step that has just opened
   void finish();
   void abort(const std::string& reason);
   void memberFailed(int member, const char* reason);
@@ -86,6 +88,8 @@ class Plant {
   ReasonText completed_reason_{};
   static constexpr std::size_t kMaxScheduled = 64;  // asked for by operators, besides those of the scenario
   std::vector<HandoverRequest> scheduled_;          // handovers for later steps
+  bool keeps_torque_ = false;                       // for the open step
+  StepTiming timing_;
   std::uint64_t missed_in_a_row_ = 0;
   std::uint64_t missed_ = 0;
   const std::int64_t made_ns_ = steadyNow();
@@ -99,6 +103,7 @@ class Plant {
   dds::Writer<msg::PlantState>& state_out_;
   dds::Writer<msg::SimReply>& reply_out_;
   dds::Writer<msg::SimStatus>& status_out_;
+  dds::Writer<msg::TimingStatus>& timing_out_;
   dds::Writer<msg::SwapPlan>& plan_out_;
   dds::Writer<msg::SwapOutcome>& outcome_out_;
   msg::PlantState state_message_;

@@ -23,7 +23,8 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
   if (!from_holder && !from_outgoing) return;
 
   JointVector effort;
-  if (!fromMessage(message, scenario_.robot.size(), effort)) {
+  const bool is_usable = fromMessage(message, scenario_.robot.size(), effort);
+  if (!is_usable) {
     // It never reaches the integrator: the joints keep their torque for this step, and the next one is somebody else's.
     effort = arm_.holdingEffort(message.step());
     arbiter_.memberFailed(member, message.step(), "it commanded an effort that is not finite or of the wrong size");
@@ -32,6 +33,7 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
   }
   if (from_holder) {
     effort_ = effort;
+    keeps_torque_ = !is_usable;
     hashes_.command = dds::chainHash(0, sample.payload);
     master_.commandArrived(message.step());
   } else {
@@ -91,6 +93,7 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
     switch (request.action()) {
       case msg::SIM_PAUSE:
         master_.pause();
+        timing_.interrupted();
         reply.accepted(true);
         break;
       case msg::SIM_RESUME:

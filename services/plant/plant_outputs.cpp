@@ -99,6 +99,8 @@ void Plant::publishStatus() {
   status.reason(end_reason_);
   status.missed_steps(missed_);
   status.chain_hash(chain_hash_);
+  // First: whoever sees the end of the run has its timing already.
+  timing_out_.write(timing_.report(master_.step(), missed_));
   status_out_.write(status);
 }
 

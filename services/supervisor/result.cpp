@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "runtime/json.hpp"
+#include "runtime/timing_json.hpp"
 
 namespace baton {
 namespace {
@@ -48,6 +49,7 @@ void writeResult(const RunInfo& info, const Scenario& scenario, const RunResult&
             {"real_time_ratio", result.sim.elapsed_s() > 0.0 ? sim_time_s / result.sim.elapsed_s() : 0.0},
             {"startup_s", result.startup_s},
             {"missed_steps", result.sim.missed_steps()},
+            {"timing", toJson(result.timing)},
             {"chain_hash", std::to_string(result.sim.chain_hash())}};
   if (info.recording.empty()) {
     json["recording"] = nullptr;

@@ -19,6 +19,7 @@ struct RunResult {
   std::string reason;            // empty when all went well
   double startup_s = -1.0;       // from the launch of the first process to step 0; negative: never started
   msg::SimStatus sim;            // the plant's last word
+  msg::TimingStatus timing;      // likewise
   msg::RecorderStatus recorder;  // the recorder's last word
   std::vector<msg::SwapOutcome> swaps;
   std::map<std::string, long> resident_kB;  // by service, when the run ended

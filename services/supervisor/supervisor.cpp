@@ -41,6 +41,9 @@ Supervisor::Supervisor(Service& service, Deployment deployment)
   service.input(dds::topics::kSimStatus, {}, [this](const msg::SimStatus& status, const dds::RawSample& sample) {
     if (!service_.participant().isSecondCopy(sample.writer)) onSimStatus(status);
   });
+  service.input(dds::topics::kTimingStatus, {}, [this](const msg::TimingStatus& status, const dds::RawSample& sample) {
+    if (!service_.participant().isSecondCopy(sample.writer)) timing_ = status;
+  });
   service.input(dds::topics::kRecorderStatus, {},
                 [this](const msg::RecorderStatus& status, const dds::RawSample&) { recorder_ = status; });
   service.input(dds::topics::kSwapOutcome, {},
@@ -64,6 +67,7 @@ ExitCode Supervisor::run() {
                .reason = reason_,
                .startup_s = startup_s_,
                .sim = lastSimStatus(),
+               .timing = timing_,
                .recorder = recorder_,
                .swaps = swaps_,
                .resident_kB = resident_});

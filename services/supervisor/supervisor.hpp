@@ -65,6 +65,7 @@ class Supervisor {
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   std::atomic<double> startup_s_{-1.0};
   msg::SimStatus sim_;
+  msg::TimingStatus timing_;
   msg::RecorderStatus recorder_;
   std::vector<msg::SwapOutcome> swaps_;
   std::map<std::string, long> resident_;  // [kB], by service

@@ -50,6 +50,16 @@ TEST(LockstepRun, RecordsEveryStepOfEveryLoopTopicOnce) {
   ASSERT_EQ(result.at("exit_code"), 0) << result;
   Streams streams = loopStreams(file);
 
+  // Every step was timed once, and together they took no longer than the run.
+  const nlohmann::json& period = result.at("timing").at("period_us");
+  EXPECT_EQ(period.at("count"), kShortSteps);
+  EXPECT_GT(period.at("p50"), 0.0);
+  EXPECT_LE(period.at("p50"), period.at("p99"));
+  EXPECT_LE(period.at("p99"), period.at("max"));
+  EXPECT_LE(period.at("mean").get<double>() * 1e-6 * kShortSteps, result.at("elapsed_s").get<double>());
+  EXPECT_TRUE(result.at("timing").at("jitter_us").is_null());
+  EXPECT_TRUE(result.at("timing").at("command_age_steps").is_null());
+
   const auto expectSteps = [](const auto& messages, std::uint64_t first, std::uint64_t last, const char* what) {
     ASSERT_EQ(messages.size(), last - first + 1) << what;
     for (std::size_t i = 0; i < messages.size(); ++i) {

@@ -22,6 +22,13 @@ TEST(RealtimeRun, PublishesEveryStepOnceAndEndsOnTime) {
   const nlohmann::json result = bench.batonJson({"run", bench.write("realtime.yaml", text), "--out", file, "--json"});
   ASSERT_EQ(result.at("state"), "finished") << result;
   EXPECT_GE(result.at("elapsed_s").get<double>(), 0.5 - 1e-3);  // it may be late, never early
+  const nlohmann::json& timing = result.at("timing");
+  for (const char* quantity : {"period_us", "jitter_us", "command_age_steps"}) {
+    EXPECT_EQ(timing.at(quantity).at("count"), 500) << quantity;
+  }
+  // A torque is as old as commands were missed in a row, of which there are no more than were missed.
+  EXPECT_EQ(timing.at("missed"), result.at("missed_steps"));
+  EXPECT_LE(timing.at("command_age_steps").at("max"), result.at("missed_steps"));
 
   Streams streams = loopStreams(file);
   const auto states = decodeStream<msg::PlantState>(streams[{"plant_state", "plant"}]);
@@ -39,6 +46,9 @@ TEST(RealtimeRun, BrakesWhenItsControllerIsSilent) {
   text.replace(text.find("duration_s: 0.5"), 15, "duration_s: 0  ");
   text.erase(text.find("swaps:"), text.find("mode:") - text.find("swaps:"));
   ASSERT_EQ(bench.baton({"up", bench.write("realtime.yaml", text)}).exit_code, 0);
+  EXPECT_TRUE(eventually([&] {
+    return !bench.batonJson({"status", "--json"}).at("timing").at("jitter_us").is_null();
+  }));
   int holder = 0;
   const nlohmann::json status = bench.batonJson({"status", "--json"});
   for (const auto& service : status.at("services")) {
@@ -50,6 +60,7 @@ TEST(RealtimeRun, BrakesWhenItsControllerIsSilent) {
   kill(holder, SIGCONT);
   const nlohmann::json result = bench.batonJson({"down", "--json"});
   EXPECT_GE(result.at("missed_steps"), 5) << result;
+  EXPECT_EQ(result.at("timing").at("command_age_steps").at("max"), 5) << result;  // then the brake's own torque
 }
 
 }  // namespace

@@ -62,9 +62,10 @@ class CodecTest : public testing::Test {};
 
 using AllTypes =
     testing::Types<msg::Quaternion, msg::PlantState, msg::Contact, msg::Reference, msg::JointCommand, msg::SimRequest,
-                   msg::SimReply, msg::SimStatus, msg::SwapRequest, msg::SwapPlan, msg::SwapAck, msg::SwapOutcome,
-                   msg::ControllerStatus, msg::Parameter, msg::ParameterStatus, msg::ServiceStatus, msg::Event,
-                   msg::StreamManifest, msg::ServiceManifest, msg::RecorderStatus, msg::ReplayStatus>;
+                   msg::SimReply, msg::SimStatus, msg::TimeSpread, msg::StepSpread, msg::TimingStatus, msg::SwapRequest,
+                   msg::SwapPlan, msg::SwapAck, msg::SwapOutcome, msg::ControllerStatus, msg::Parameter,
+                   msg::ParameterStatus, msg::ServiceStatus, msg::Event, msg::StreamManifest, msg::ServiceManifest,
+                   msg::RecorderStatus, msg::ReplayStatus>;
 TYPED_TEST_SUITE(CodecTest, AllTypes);
 
 template <class... Types>

@@ -109,6 +109,32 @@ inline void fill(msg::SimStatus& m) {
   m.chain_hash(kId);
 }
 
+inline void fill(msg::TimeSpread& m) {
+  m.count(kId);
+  m.mean_us(0.1);
+  m.p50_us(1.5);
+  m.p99_us(2.5);
+  m.p999_us(3.5);
+  m.max_us(4.5);
+}
+
+inline void fill(msg::StepSpread& m) {
+  m.count(kId);
+  m.mean(0.1);
+  m.p50(kId);
+  m.p99(kId);
+  m.p999(kId);
+  m.max(kId);
+}
+
+inline void fill(msg::TimingStatus& m) {
+  m.step(kId);
+  fill(m.period());
+  fill(m.jitter());
+  fill(m.command_age());
+  m.missed_steps(kId);
+}
+
 inline void fill(msg::SwapRequest& m) {
   m.request_id(kId);
   m.target(fullName());

@@ -1,0 +1,14 @@
+/// TimingStatus as the JSON that result.json and `baton status --json` carry.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "msg/sim.h"
+
+namespace baton {
+
+/// {"period_us": {"count", "mean", "p50", "p99", "p999", "max"}, "jitter_us": ..., "command_age_steps": ..., "missed"};
+/// null stands for what has no values, as jitter and age have in lockstep.
+[[nodiscard]] nlohmann::ordered_json toJson(const msg::TimingStatus& timing);
+
+}  // namespace baton

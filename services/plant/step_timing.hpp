@@ -1,0 +1,32 @@
+/// How punctual the steps are: histograms that are filled once a step and told with the status.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "msg/sim.h"
+#include "time/histogram.hpp"
+
+namespace baton {
+
+/// The clock is the caller's: any steady nanosecond count.
+class StepTiming {
+ public:
+  /// A step has opened; `runs`: it goes on by itself, no operator holds it.
+  void opened(std::int64_t now_ns, bool runs) noexcept;
+  /// An operator holds the open step: how long it takes says nothing.
+  void interrupted() noexcept { opened_ns_.reset(); }
+  /// Realtime: the open step ends, so long after its deadline; `is_old` when its torque was kept from the step before.
+  void ticked(std::int64_t lateness_ns, bool is_old) noexcept;
+
+  [[nodiscard]] msg::TimingStatus report(std::uint64_t step, std::uint64_t missed_steps) const;
+
+ private:
+  Histogram period_ns_;
+  Histogram jitter_ns_;
+  Histogram command_age_;
+  std::int64_t age_steps_ = 0;
+  std::optional<std::int64_t> opened_ns_;  // of the open step, while its period counts
+};
+
+}  // namespace baton
