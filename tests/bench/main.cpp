@@ -1,10 +1,8 @@
 /// What the mathematics costs: the dynamics beside Orocos KDL and MuJoCo on the very same arms, and a step of each law.
 ///
-///   deploy/setup bench
-///   cmake --preset release -DBATON_BENCH=ON && cmake --build --preset release --target bench
-///   .build/release/bin/baton-bench
-///   .build/release/bin/baton-bench --benchmark_filter=mass      some cases only
-///   .build/release/bin/baton-bench --benchmark_out=FILE         every repetition, as JSON
+///   deploy/baton bench laws
+///   deploy/baton bench laws --benchmark_filter=mass      some cases only
+///   deploy/baton bench laws --benchmark_out=FILE         every repetition, as JSON
 ///
 /// It takes about a minute; the exit code is 1 when a ratio misses its target.
 ///
@@ -45,7 +43,7 @@ int main(int argc, char** argv) {
     benchmark::RunSpecifiedBenchmarks(&table);
     return table.print(std::cout) ? 0 : 1;
   } catch (const std::exception& error) {
-    std::cerr << "baton-bench: " << error.what() << "\n";
+    std::cerr << "baton-bench-laws: " << error.what() << "\n";
     return 1;
   }
 }

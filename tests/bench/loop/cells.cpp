@@ -1,0 +1,109 @@
+#include "cells.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <optional>
+
+#include "base/error.hpp"
+#include "dds/typed.hpp"
+#include "runtime/service_options.hpp"
+#include "scenario.hpp"
+
+namespace baton::bench {
+namespace {
+using Json = nlohmann::json;
+
+constexpr double kCrawl_steps_per_s = 1e-3;  // until they are let go they do not get beyond step 0
+
+/// Watches the plants of all cells and speaks to them at once.
+class Starter {
+ public:
+  Starter(int domain, const std::string& partitions)
+      : participant_({.domain = domain, .partition = partitions, .cell = "", .run = "", .service = "bench"}),
+        statuses_(participant_, dds::topics::kSimStatus,
+                  [this](const msg::SimStatus& status, const dds::RawSample& sample) { onStatus(status, sample); }),
+        requests_(participant_, dds::topics::kSimRequest) {}
+
+  /// Whether so many plants run and listen.
+  [[nodiscard]] bool areRunning(int cells) {
+    const std::set<dds::GuidPrefix> listeners = requests_.raw().matched();
+    const std::lock_guard lock(mutex_);
+    return std::count_if(running_.begin(), running_.end(),
+                         [&](const dds::GuidPrefix& plant) { return listeners.contains(plant); }) == cells;
+  }
+
+  void letGo() {
+    msg::SimRequest request;
+    request.request_id(1);
+    request.action(msg::SIM_RATE);
+    request.rate(0.0);  // as fast as possible
+    requests_.write(request);
+  }
+
+  /// The status with which a cell's plant answered that.
+  [[nodiscard]] std::optional<msg::SimStatus> letGoAt(const std::string& cell) {
+    const std::lock_guard lock(mutex_);
+    const auto found = let_go_.find(cell);
+    return found == let_go_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  void onStatus(const msg::SimStatus& status, const dds::RawSample& sample) {
+    const dds::GuidPrefix prefix = dds::prefixOf(sample.writer);
+    const std::optional<dds::Peer> peer = participant_.peer(prefix);
+    if (!peer || peer->service != kPlantName || status.state() != msg::SIM_STATE_RUNNING) return;
+    const std::lock_guard lock(mutex_);
+    running_.insert(prefix);
+    if (status.rate() == 0.0) let_go_.try_emplace(peer->cell, status);
+  }
+
+  std::mutex mutex_;
+  std::set<dds::GuidPrefix> running_;
+  std::map<std::string, msg::SimStatus> let_go_;
+  dds::Participant participant_;
+  dds::Reader<msg::SimStatus> statuses_;
+  dds::Writer<msg::SimRequest> requests_;
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+Measurement measureCells(const Case& one, int steps, Programs& programs) {
+  const double crawl = kCrawl_steps_per_s * static_cast<double>(kStep_ns) * 1e-9;
+  const std::string scenario = programs.write("cells.yaml", scenarioText(one.uses_force, one.standbys, steps, crawl));
+  const std::string prefix = "bench-" + std::to_string(getpid()) + "-";
+  const auto cellName = [&](int index) { return prefix + std::to_string(index); };
+  Starter starter(programs.domain(), prefix + "*");
+  for (int i = 0; i < one.cells; ++i) {
+    programs.start("baton", {"run", scenario, "--cell", cellName(i), "--domain", std::to_string(programs.domain()),
+                             "--no-recording", "--json"});
+  }
+  programs.waitUntil([&] { return starter.areRunning(one.cells); });
+  starter.letGo();
+  const std::vector<std::string> printed = programs.finish();
+
+  Measurement measured{.steps_per_s = 0.0};
+  std::vector<double> p50s_us, p99s_us;
+  for (int i = 0; i < one.cells; ++i) {
+    const Json result = jsonIn(printed[static_cast<std::size_t>(i)]);
+    p50s_us.push_back(result.at("timing").at("period_us").at("p50"));
+    p99s_us.push_back(result.at("timing").at("period_us").at("p99"));
+    const std::optional<msg::SimStatus> start = starter.letGoAt(cellName(i));
+    if (!start) throw UnavailableError(cellName(i) + " did not say that it goes as fast as it can");
+    measured.steps_per_s += (result.at("steps").get<double>() - static_cast<double>(start->step())) /
+                            (result.at("elapsed_s").get<double>() - start->elapsed_s());
+  }
+  measured.p50_us = median(p50s_us);
+  measured.p99_us = median(p99s_us);
+  return measured;
+}
+
+}  // namespace baton::bench

@@ -1,0 +1,70 @@
+// The bench of the loop: that it measures. What it measures is the machine's business.
+#include <gtest/gtest.h>
+
+#include "support/processes.hpp"
+
+namespace baton::test {
+namespace {
+
+TEST(LoopBench, MeasuresBatonBesideTheRawChainAndSeveralCellsAtOnce) {
+  const Bench bench;
+  const Finished finished = runProgram(programFolder() / "baton-bench",
+                                       {"--rounds", "1", "--steps", "300", "--json", "--only", "raw-3-hops", "force",
+                                        "raw-3-hops-observed", "force-recorded", "cells-2"},
+                                       bench.folder());
+  ASSERT_EQ(finished.exit_code, 0) << finished.err;
+  const nlohmann::json report = nlohmann::json::parse(finished.out);
+
+  ASSERT_EQ(report.at("cases").size(), 5U);
+  std::map<std::string, double> p50_us;
+  for (const auto& one : report.at("cases")) {
+    SCOPED_TRACE(one.dump());
+    EXPECT_EQ(one.at("processes"), 4 * one.at("cells").get<int>() + (one.at("recorded").get<bool>() ? 1 : 0));
+    p50_us[one.at("name")] = one.at("p50_us").at("median");
+    EXPECT_GT(one.at("p50_us").at("median"), 0.0);
+    EXPECT_LE(one.at("p50_us").at("median"), one.at("p99_us").at("median"));
+    EXPECT_GT(one.at("steps_per_s").at("median"), 0.0);
+  }
+  int measured = 0;
+  for (const auto& one : report.at("comparisons")) {
+    SCOPED_TRACE(one.dump());
+    const auto of = p50_us.find(one.at("of")), against = p50_us.find(one.at("against"));
+    if (of == p50_us.end() || against == p50_us.end()) {
+      EXPECT_TRUE(one.at("ratio").is_null());
+      EXPECT_TRUE(one.at("reached").is_null());
+      continue;
+    }
+    ++measured;
+    const double ratio = of->second / against->second;
+    EXPECT_DOUBLE_EQ(one.at("ratio").at("median").get<double>(), ratio);
+    EXPECT_EQ(one.at("reached").is_null(), one.at("target").is_null());
+    if (one.at("target").is_null()) continue;
+    EXPECT_EQ(one.at("reached").get<bool>(), ratio <= one.at("target").get<double>());
+  }
+  EXPECT_EQ(measured, 3);
+  EXPECT_GT(report.at("resident_MB").at("plant"), 0.0);
+  EXPECT_GT(report.at("resident_MB").at("recorder"), 0.0);
+  EXPECT_NE(finished.err.find("raw-3-hops"), std::string::npos) << finished.err;  // the table
+}
+
+TEST(LoopBench, NamesItsCasesWhenOneIsUnknown) {
+  const Bench bench;
+  const Finished finished = runProgram(programFolder() / "baton-bench", {"--only", "nonsense"}, bench.folder());
+  EXPECT_EQ(finished.exit_code, 2) << finished.err;
+  EXPECT_NE(finished.err.find("force-recorded"), std::string::npos) << finished.err;
+}
+
+TEST(RawChain, PassesEveryStepInBothOrders) {
+  const Bench bench;
+  for (const char* hops : {"2", "3"}) {
+    const Finished finished =
+        runProgram(programFolder() / "baton-raw-chain",
+                   {"--hops", hops, "--steps", "200", "--warm-up", "20", "--domain", std::to_string(bench.domain())},
+                   bench.folder());
+    ASSERT_EQ(finished.exit_code, 0) << finished.err;
+    EXPECT_EQ(nlohmann::json::parse(finished.out).at("period_us").at("count"), 200);
+  }
+}
+
+}  // namespace
+}  // namespace baton::test
