@@ -45,36 +45,6 @@ TEST(JointInverseDynamics, MakesTheArmAccelerateAsTheErrorDynamicsAsk) {
   }
 }
 
-/// Largest distance over 1 s between the simulated error and e'' + Kd e' + Kp e = 0 solved by hand.
-double discrepancy(double dt_s) {
-  const RobotModel robot = rppRobot();
-  const JointVector q0 = Vector3(0.1, 0.02, 0.02);
-  ClosedLoop loop(robot, makeLaw("joint_inverse_dynamics", robot, {}), dt_s, q0,
-                  [&](double t) { return sineReference(robot, t); });
-  const JointVector e0 = sineReference(robot, 0.0).q - q0;
-  const JointVector ed0 = sineReference(robot, 0.0).qd;
-  const double root = std::sqrt(kKd * kKd / 4 - kKp);
-  const double slow = -kKd / 2 + root, fast = -kKd / 2 - root;
-  const JointVector a = (ed0 - fast * e0) / (slow - fast), b = e0 - a;
-  double largest = 0.0;
-  while (loop.time_s < 1.0) {
-    EXPECT_TRUE(loop.step());
-    const double t = loop.time_s;
-    const JointVector expected = a * std::exp(slow * t) + b * std::exp(fast * t);
-    largest = std::max(largest, (sineReference(robot, t).q - loop.q() - expected).norm());
-  }
-  return largest;
-}
-
-TEST(JointInverseDynamics, ErrorFollowsItsLinearEquationToFirstOrderInTheStep) {
-  // The torque is held for a step, so the loop is the continuous one to first order: half the step, half the
-  // discrepancy.
-  const double one = discrepancy(1e-3), half = discrepancy(5e-4), quarter = discrepancy(2.5e-4);
-  EXPECT_LT(half, 3e-3);
-  EXPECT_NEAR(one / half, 2.0, 0.15);
-  EXPECT_NEAR(half / quarter, 2.0, 0.1);
-}
-
 TEST(JointInverseDynamics, ReachesTheSetPoint) {
   EXPECT_LT(kKp * (kTarget - restingPosition({})).norm(), kRestTolerance);
 }

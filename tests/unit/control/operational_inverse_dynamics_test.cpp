@@ -71,41 +71,6 @@ TEST(OperationalInverseDynamics, PseudoInverseServesAllSixCoordinatesOfALongArm)
   }
 }
 
-/// Largest distance over 1 s, along any axis, between the simulated tip error and x~'' + Kd x~' + Kp x~ = 0 solved by
-/// hand.
-double discrepancy(double dt_s) {
-  const RobotModel robot = rppRobot();
-  const JointVector q0 = Vector3(0.1, 0.02, 0.02);
-  ClosedLoop loop(robot, makeLaw("operational_inverse_dynamics", robot, {}), dt_s, q0,
-                  [&](double t) { return sineReference(robot, t); });
-  const Reference start = sineReference(robot, 0.0);
-  const Vector3 x0 = start.X_WE.p - loop.tip(), v0 = start.V_WE.head<3>();
-  // Kp 280, Kd 30: complex roots -15 +- i w; Kp 70, Kd 20: real roots -10 +- r.
-  const double w = std::sqrt(280.0 - 225.0), r = std::sqrt(100.0 - 70.0);
-  double largest = 0.0;
-  while (loop.time_s < 1.0) {
-    EXPECT_TRUE(loop.step());
-    const double t = loop.time_s;
-    const Vector3 error = sineReference(robot, t).X_WE.p - loop.tip();
-    for (const int i : {0, 1}) {
-      const double expected =
-          std::exp(-15.0 * t) * (x0(i) * std::cos(w * t) + (v0(i) + 15.0 * x0(i)) / w * std::sin(w * t));
-      largest = std::max(largest, std::abs(error(i) - expected));
-    }
-    const double expected =
-        std::exp(-10.0 * t) * (x0(2) * std::cosh(r * t) + (v0(2) + 10.0 * x0(2)) / r * std::sinh(r * t));
-    largest = std::max(largest, std::abs(error(2) - expected));
-  }
-  return largest;
-}
-
-TEST(OperationalInverseDynamics, ErrorFollowsItsLinearEquationToFirstOrderInTheStep) {
-  const double one = discrepancy(1e-3), half = discrepancy(5e-4), quarter = discrepancy(2.5e-4);
-  EXPECT_LT(half, 2e-3);
-  EXPECT_NEAR(one / half, 2.0, 0.15);
-  EXPECT_NEAR(half / quarter, 2.0, 0.1);
-}
-
 TEST(OperationalInverseDynamics, EverySolverReachesTheSetPointOfTheReportsArm) {
   const RobotModel robot = rppRobot();
   for (const char* solver : {"position", "pseudo_inverse", "damped_least_squares"}) {
