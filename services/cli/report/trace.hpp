@@ -36,7 +36,8 @@ struct Trace {
   bool is_complete = false;  // by the recording's own certificate
 
   [[nodiscard]] Eigen::Index steps() const { return q.cols(); }
-  [[nodiscard]] double time(Eigen::Index step) const { return static_cast<double>(step) * scenario.stepSeconds(); }
+  /// To the bit what services make of a step's time_ns.
+  [[nodiscard]] double time(Eigen::Index step) const { return static_cast<double>(step * scenario.step_ns) * 1e-9; }
   [[nodiscard]] Eigen::Index last() const { return steps() - 1; }
 };
 
