@@ -91,13 +91,12 @@ std::vector<Check> runCheck(const CheckRequest& request, const std::vector<Trace
 
 Check followsScenario(const Trace& run) {
   const Trajectory trajectory(run.scenario.robot, run.scenario.trajectory);
-  double worst = 0.0;
+  theory::Largest worst;
   const auto compare = [&](const auto& wanted, const auto& recorded) {
-    const double apart = (wanted - recorded).cwiseAbs().maxCoeff();
-    if (!(apart <= worst)) worst = apart;  // what was not recorded is NaN, and stays
+    worst.add((wanted - recorded).cwiseAbs().template maxCoeff<Eigen::PropagateNaN>());
   };
   Reference wanted;
-  for (Eigen::Index k = 0; k < run.steps() && !std::isnan(worst); ++k) {
+  for (Eigen::Index k = 0; k < run.steps(); ++k) {
     trajectory.evaluate(run.time(k), wanted);
     if (wanted.q.size() > 0) {
       compare(wanted.q, run.q_d.col(k));

@@ -2,7 +2,6 @@
 /// are what the tip exerts on the environment, from the walls of the scenario.
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -57,17 +56,16 @@ Checks yieldingTip(const Trace& run, const Vector3& m, const Vector3& d, const V
     return xd;
   };
   const Eigen::MatrixXd motion = integrate(run, derivative, Vector6::Zero(), kSubsteps);
-  double predicted = 0.0, measured = 0.0, worst = 0.0, travel = 0.0, travel_in_contact = 0.0;
+  Largest predicted, measured, worst, travel, travel_in_contact;
   Vector3 before = referenceAt(run, 0).X_WE.p;
   for (Eigen::Index step = 0; step <= restStep(run); ++step) {
     const Vector3 p = referenceAt(run, step).X_WE.p - motion.col(step).head<3>();
     const double force = wallForce(scenario, p).norm();
-    predicted = std::max(predicted, force);
-    measured = std::max(measured, run.h_e.col(step).head<3>().norm());
-    const double difference = (p - run.p_WE.col(step)).norm();
-    if (!(difference <= worst)) worst = difference;
-    travel = std::max(travel, (p - before).norm());
-    if (force > 0.0) travel_in_contact = std::max(travel_in_contact, (p - before).norm());
+    predicted.add(force);
+    measured.add(run.h_e.col(step).head<3>().norm());
+    worst.add((p - run.p_WE.col(step)).norm());
+    travel.add((p - before).norm());
+    if (force > 0.0) travel_in_contact.add((p - before).norm());
     before = p;
   }
   double felt = 0.0, Ke = 0.0;

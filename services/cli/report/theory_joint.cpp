@@ -1,6 +1,5 @@
 /// Checks of joint-space laws at set-points and after a motion: joint PD, and inverse dynamics with parts of its model
 /// wrong or left out. e = q_d - q; n = C qd + g.
-#include <algorithm>
 #include <cmath>
 
 #include "robot/dynamics.hpp"
@@ -181,12 +180,12 @@ Checks settlesAfterMotion(const Inputs& in) {
       });
   Checks checks = reachesGoal(in);
   for (int i = 0; i < robot.size(); ++i) {
-    double predicted = 0.0, measured = 0.0, speed = 0.0;
+    Largest predicted, measured, speed;
     for (Eigen::Index k = 0; k <= restStep(run); ++k) {
       const double wanted = run.q_d(i, k);
-      predicted = std::max(predicted, std::abs(wanted - motion(i, k)));
-      measured = std::max(measured, std::abs(wanted - run.q(i, k)));
-      speed = std::max(speed, std::abs(motion(robot.size() + i, k)));
+      predicted.add(std::abs(wanted - motion(i, k)));
+      measured.add(std::abs(wanted - run.q(i, k)));
+      speed.add(std::abs(motion(robot.size() + i, k)));
     }
     checks.push_back(within("largest error of " + jointName(i) + " on the way", jointUnit(robot, i), predicted,
                             measured, speed * run.scenario.stepSeconds() / 2.0));
@@ -242,7 +241,7 @@ Checks firstTorque(const Inputs& in) {
   for (int i = 0; i < robot.size(); ++i) {
     const std::string name = "tau" + std::to_string(i + 1), unit = effortUnit(robot, i);
     checks.push_back(relative("first effort " + name, unit, tau(i), run.tau(i, 1), kSameState));
-    const double peak = run.tau.row(i).tail(run.last()).cwiseAbs().maxCoeff();
+    const double peak = run.tau.row(i).tail(run.last()).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
     checks.push_back(relative("largest effort |" + name + "|", unit, std::abs(tau(i)), peak, kSameState));
   }
   return checks;

@@ -1,6 +1,7 @@
 /// What the checks of theory.cpp share: parameters by name, equilibria by Newton's iteration, motions by integration.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -60,6 +61,18 @@ struct FreeResponse {
   double ed = 0.0;
 };
 [[nodiscard]] FreeResponse freeResponse(double m, double d, double k, const FreeResponse& start, double time_s);
+
+/// The largest of what is added, from zero; NaN once something is, so that what was not recorded does not go unnoticed.
+class Largest {
+ public:
+  void add(double value) {
+    if (!(value <= value_) && !std::isnan(value_)) value_ = value;
+  }
+  operator double() const { return value_; }  // NOLINT(google-explicit-constructor): it is that number
+
+ private:
+  double value_ = 0.0;
+};
 
 // --- checks
 

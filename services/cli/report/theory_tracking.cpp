@@ -54,11 +54,12 @@ Linear linearOf(const Trace& run) {
 
 /// Half of what one coordinate of the predicted motion travels in a step at its fastest.
 double halfStepTravel(const Trace& run, const Linear& linear, int i) {
-  double travel = 0.0, before = linear.wanted(i, 0) - linear.e0(i);
+  Largest travel;
+  double before = linear.wanted(i, 0) - linear.e0(i);
   for (Eigen::Index k = 1; k <= restStep(run); ++k) {
     const FreeResponse e = freeResponse(1.0, linear.kd(i), linear.kp(i), {linear.e0(i), linear.ed0(i)}, run.time(k));
     const double here = linear.wanted(i, k) - e.e;
-    travel = std::max(travel, std::abs(here - before));
+    travel.add(std::abs(here - before));
     before = here;
   }
   return travel / 2.0;
@@ -129,11 +130,10 @@ Checks secondOrderError(const Inputs& in) {
     };
     const auto measured = [&](Eigen::Index k) { return linear.wanted(i, k) - linear.actual(i, k); };
     const double allowed = halfStepTravel(run, linear, i);
-    double worst = 0.0;
+    Largest worst;
     Eigen::Index third = -1;
     for (Eigen::Index k = 0; k <= restStep(run); ++k) {
-      const double difference = std::abs(measured(k) - closedForm(k));
-      if (!(difference <= worst)) worst = difference;
+      worst.add(std::abs(measured(k) - closedForm(k)));
       if (third < 0 && std::abs(closedForm(k)) < std::abs(linear.e0(i)) / 3.0) third = k;
     }
     checks.push_back(
@@ -155,11 +155,10 @@ Checks tracks(const Inputs& in) {
   for (int i = 0; i < linear.kp.size(); ++i) {
     const std::string& name = linear.names[static_cast<std::size_t>(i)];
     const std::string& unit = linear.units[static_cast<std::size_t>(i)];
-    double worst = 0.0;
+    Largest worst;
     for (Eigen::Index k = 0; k <= restStep(run); ++k) {
       const FreeResponse e = freeResponse(1.0, linear.kd(i), linear.kp(i), {linear.e0(i), linear.ed0(i)}, run.time(k));
-      const double left = std::abs(linear.wanted(i, k) - linear.actual(i, k));
-      if (std::abs(e.e) < 1e-6 && !(left <= worst)) worst = left;
+      if (std::abs(e.e) < 1e-6) worst.add(std::abs(linear.wanted(i, k) - linear.actual(i, k)));
     }
     checks.push_back(within("largest error of " + name + " once the start is forgotten", unit, 0.0, worst,
                             halfStepTravel(run, linear, i)));
