@@ -1,8 +1,10 @@
 // What is made of recordings: numbers, drawings, the page of figures.
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "runtime/paths.hpp"
 #include "support/processes.hpp"
@@ -62,6 +64,97 @@ TEST(Report, AFigureIsRunDrawnAndHeldAgainstTheory) {
   const nlohmann::json again = bench.batonJson({"figures", "--only", "9", "--out", out, "--json"});
   EXPECT_EQ(again.at("reused"), again.at("runs"));
   EXPECT_EQ(again.at("figures"), made.at("figures"));
+}
+
+/// An installation with data that a test may change: the programs by hard links, so that they see it beside them.
+fs::path installation(const Bench& bench) {
+  const fs::path root = bench.folder() / "installed", data = root / "share/baton";
+  fs::create_directories(root / "bin");
+  fs::create_directories(data);
+  for (const auto& program : fs::directory_iterator(programFolder())) {
+    const fs::path link = root / "bin" / program.path().filename();
+    std::error_code is_elsewhere;  // no link leads to another file system
+    fs::create_hard_link(program, link, is_elsewhere);
+    if (is_elsewhere) fs::copy_file(program, link);
+  }
+  for (const char* folder : {"scenarios", "robots", "figures"})
+    fs::copy(deployFolder() / folder, data / folder, fs::copy_options::recursive);
+  return root;
+}
+
+void write(const fs::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary);
+  ASSERT_TRUE(stream << text);
+}
+
+TEST(Report, ABatchRunsWhatIsNotThereOrNotOfThisExperimentAndNothingElse) {
+  Bench bench;
+  const fs::path installed = installation(bench), baton = installed / "bin/baton";
+  const fs::path out = bench.folder() / "figures", recordings = out / "recordings", page = out / "index.html";
+  const fs::path first = recordings / "fig24_operational_tracking.mcap", second = recordings / "fig24_cubic.mcap";
+  const std::vector<std::string> arguments{
+      "figures", "--only",     "24",     "--jobs",   "1",
+      "--out",   out.string(), "--json", "--domain", std::to_string(bench.domain())};
+  const auto scenarioOf = [&](const fs::path& recording) {
+    return (installed / "share/baton/scenarios/report" / recording.stem()).replace_extension(".yaml");
+  };
+  std::map<fs::path, std::string> texts;
+  for (const fs::path& recording : {first, second}) {  // shorter than the report's; theory holds all the same
+    std::string& text = texts[recording] = readFile(scenarioOf(recording));
+    const std::string duration = "duration_s: 8";
+    ASSERT_NE(text.find(duration), std::string::npos);
+    text.replace(text.find(duration), duration.size(), "duration_s: 5");
+    write(scenarioOf(recording), text);
+  }
+
+  // The second run is so slow that it lasts until it is interrupted.
+  write(scenarioOf(second), texts[second] + "rate: 0.001\n");
+  int batch = bench.start(baton.string(), arguments, "first.log");
+  ASSERT_TRUE(eventually([&] {
+    const std::string cell = "figures-" + std::to_string(batch) + "-1";
+    const Finished status = bench.baton({"status", "--cell", cell, "--json"});
+    return status.exit_code == 0 && nlohmann::json::parse(status.out).at("state") == "running";
+  }));
+  ASSERT_EQ(kill(batch, SIGINT), 0);
+  EXPECT_EQ(bench.wait(batch), 130) << readFile(bench.folder() / "first.log");
+  EXPECT_TRUE(eventually([&] { return processesWith(installed.string()).empty(); }));
+  ASSERT_TRUE(fs::exists(first));
+  EXPECT_FALSE(fs::exists(second)) << "it would be taken for the run's recording";
+  EXPECT_FALSE(fs::exists(page));
+  const auto when_first_was_recorded = fs::last_write_time(first);
+
+  // As a batch that was killed leaves it: whole as a recording, but not of the whole run. It is not used.
+  fs::rename(recordings / "fig24_cubic.failed.mcap", second);
+  EXPECT_EQ(runProgram(baton, {"bag", "info", second.string()}, bench.folder()).exit_code, 0);
+  batch = bench.start(baton.string(), arguments, "second.log");
+  ASSERT_TRUE(eventually([&] { return !processesWith(second.string()).empty(); }));
+  ASSERT_EQ(kill(batch, SIGINT), 0);
+  EXPECT_EQ(bench.wait(batch), 130) << readFile(bench.folder() / "second.log");
+  EXPECT_EQ(fs::last_write_time(first), when_first_was_recorded);
+  EXPECT_FALSE(fs::exists(page));
+
+  const auto reused = [&] {
+    const Finished finished = runProgram(baton, arguments, bench.folder());
+    EXPECT_EQ(finished.exit_code, 0) << finished.out << finished.err;
+    const nlohmann::json result = nlohmann::json::parse(finished.out);
+    EXPECT_EQ(result.at("runs"), 2);
+    EXPECT_TRUE(result.at("figures").at(0).at("agrees"));
+    return result.at("reused").get<int>();
+  };
+  write(scenarioOf(second), texts[second]);
+  EXPECT_EQ(reused(), 1) << "the first";
+  EXPECT_EQ(fs::last_write_time(first), when_first_was_recorded);
+  const std::string html = readFile(page);
+  for (const auto& entry : fs::directory_iterator(out)) {
+    if (entry.path().extension() != ".svg") continue;
+    EXPECT_NE(html.find(entry.path().filename()), std::string::npos) << entry;
+  }
+
+  write(scenarioOf(first), texts[first] + "# changed\n");
+  fs::resize_file(second, fs::file_size(second) / 2);
+  EXPECT_EQ(reused(), 0) << "one of another text, one cut off";
+  fs::remove(second);
+  EXPECT_EQ(reused(), 1) << "the one that is there";
 }
 
 TEST(Report, TheStudyOfTheCouplingAgreesWithTheory) {
