@@ -4,10 +4,22 @@
 #include <benchmark/benchmark.h>
 
 #include <string>
+#include <vector>
+
+#include "support/robots.hpp"
 
 namespace baton::bench {
 
-inline constexpr const char* kRppArm = "RPP arm, 3 joints";
+struct Arm {
+  std::string name;
+  RobotModel model;
+};
+
+/// The arms that everything is timed on.
+[[nodiscard]] inline std::vector<Arm> arms() {
+  return {{"RPP arm, 3 joints", test::rppRobot()}, {"revolute chain, 7 joints", test::randomRevoluteChain(7, 7)}};
+}
+
 inline constexpr int kStates = 64;  // visited in turn, so that no call repeats the one before
 static_assert((kStates & (kStates - 1)) == 0);
 
@@ -25,11 +37,11 @@ void addCase(const std::string& name, Call call) {
   });
 }
 
-/// The dynamics of chains of 3 and 7 joints, by Baton, Orocos KDL and MuJoCo. Throws std::runtime_error when the
-/// libraries disagree.
+/// The dynamics of each arm, by Baton, Orocos KDL and MuJoCo. Throws std::runtime_error when the libraries disagree.
 void addDynamics();
 
-/// One step of each registered law on the RPP arm, holding the baton and standing by. Throws std::runtime_error when a
+/// One step of each registered law on each arm, with its default parameters, holding the baton and standing by. Laws on
+/// the tip move its position alone, with more than three joints by the pseudo-inverse. Throws std::runtime_error when a
 /// law refuses a step.
 void addLaws();
 

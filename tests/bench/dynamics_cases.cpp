@@ -60,8 +60,7 @@ void addArm(const std::string& arm, const RobotModel& model) {
 }  // namespace
 
 void addDynamics() {
-  addArm(kRppArm, test::rppRobot());
-  addArm("revolute chain, 7 joints", test::randomRevoluteChain(7, 7));
+  for (const Arm& arm : arms()) addArm(arm.name, arm.model);
 }
 
 }  // namespace baton::bench

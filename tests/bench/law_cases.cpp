@@ -65,17 +65,20 @@ struct RunningLaw {
 }  // namespace
 
 void addLaws() {
-  const RobotModel model = test::rppRobot();
-  for (const LawInfo& info : allLaws()) {
-    const auto holding = std::make_shared<RunningLaw>(info, model), waiting = std::make_shared<RunningLaw>(info, model);
-    for (int k = 0; k < kStates; ++k) {
-      for (const LawStatus status : {holding->hold(k), waiting->standBy(k)}) {
-        if (status != LawStatus::kOk) throw std::runtime_error(info.name + " refuses a step: " + toString(status));
+  for (const auto& [arm, model] : arms()) {
+    for (const LawInfo& info : allLaws()) {
+      const auto holding = std::make_shared<RunningLaw>(info, model),
+                 waiting = std::make_shared<RunningLaw>(info, model);
+      for (int k = 0; k < kStates; ++k) {
+        for (const LawStatus status : {holding->hold(k), waiting->standBy(k)}) {
+          if (status != LawStatus::kOk)
+            throw std::runtime_error(info.name + " refuses a step of the " + arm + ": " + toString(status));
+        }
       }
+      const std::string name = arm + "/" + info.name;
+      addCase(name + "/Baton", [holding](int k) { return holding->hold(k); });
+      addCase(name + ", standing by/Baton", [waiting](int k) { return waiting->standBy(k); });
     }
-    const std::string name = std::string(kRppArm) + "/" + info.name;
-    addCase(name + "/Baton", [holding](int k) { return holding->hold(k); });
-    addCase(name + ", standing by/Baton", [waiting](int k) { return waiting->standBy(k); });
   }
 }
 
