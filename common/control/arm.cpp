@@ -14,10 +14,14 @@ const char* toString(Coupling coupling) {
   return "?";
 }
 
-Arm::Arm(const RobotModel& model, const ArmConfig& config) : model_(model), config_(config) {
-  state_.q = config.start_q;
-  state_.qd = config.start_qd;
+Arm::Arm(const RobotModel& model, const ArmConfig& config) : model_(model), config_(config) { reset(); }
+
+void Arm::reset() {
+  state_.q = config_.start_q;
+  state_.qd = config_.start_qd;
   state_.tau_applied = JointVector::Zero(model_.size());
+  blend_ = {};
+  h_e_before_.reset();
   updateTip();
 }
 
@@ -45,6 +49,17 @@ JointVector Arm::blended(std::uint64_t step, const JointVector& effort) const {
 
 JointVector Arm::holdingEffort(std::uint64_t step) const {
   return 2.0 * state_.tau_applied - blended(step, state_.tau_applied);
+}
+
+void Arm::archive(StateArchive& state) noexcept {
+  bool has_before = h_e_before_.has_value();
+  Vector6 before = h_e_before_.value_or(Vector6::Zero());
+  state(state_.q, state_.qd, state_.tau_applied, has_before, before);
+  blend_.archive(state);
+  if (!state.isRestoring() || !state.isGood() || state_.q.size() != model_.size()) return;
+  h_e_before_.reset();
+  if (has_before) h_e_before_ = before;
+  updateTip();
 }
 
 Contact Arm::felt(const Contact& contact) const {

@@ -34,6 +34,9 @@ class Arm {
   /// `model` must outlive the arm.
   Arm(const RobotModel& model, const ArmConfig& config);
 
+  /// Back to the start, at rest or not as the configuration says, without a blend.
+  void reset();
+
   [[nodiscard]] const RobotState& state() const { return state_; }
 
   /// Built into the plant for when nobody holds the baton: gravity held, every motion damped,
@@ -51,6 +54,9 @@ class Arm {
   /// Holds tau, cut to the joints' limits, over one step that begins with this contact. Returns false, leaving the
   /// state as it was, when the motion stops being finite.
   [[nodiscard]] bool move(const JointVector& tau, const Contact& contact);
+
+  /// State, blend and what the coupling remembers; the tip follows from them.
+  void archive(StateArchive& state) noexcept;
 
  private:
   void updateTip();

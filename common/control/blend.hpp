@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "base/state_archive.hpp"
 #include "base/types.hpp"
 
 namespace baton {
@@ -32,6 +33,8 @@ class BumplessBlend {
   void add(std::uint64_t step, JointVector& tau) const noexcept {
     if (isActive(step)) tau += quinticFade(static_cast<double>(step - start_) / static_cast<double>(duration_)) * r0_;
   }
+
+  void archive(StateArchive& state) noexcept { state(start_, duration_, r0_); }
 
   [[nodiscard]] bool isActive(std::uint64_t step) const noexcept { return step >= start_ && step - start_ < duration_; }
 

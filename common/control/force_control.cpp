@@ -75,6 +75,8 @@ class ForceControl final : public Law {
     return LawStatus::kOk;
   }
 
+  void archive(StateArchive& state) noexcept override { state(integral_, has_integral_, commanded_); }
+
  private:
   LawStatus check(const LawInput& input) const noexcept {
     const Reference& ref = input.reference;

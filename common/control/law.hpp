@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/signals.hpp"
+#include "base/state_archive.hpp"
 #include "base/types.hpp"
 #include "control/parameters.hpp"
 #include "robot/model.hpp"
@@ -50,6 +51,9 @@ class Law {
 
   /// Effort for this step. @param[out] tau n entries [N m or N]; left as it was unless the result is kOk.
   [[nodiscard]] virtual LawStatus step(const LawInput& input, JointVector& tau) noexcept = 0;
+
+  /// Lists what the law remembers from step to step, for checkpoints. Laws without state list nothing.
+  virtual void archive(StateArchive&) noexcept {}
 };
 
 /// A law as the registry lists it.

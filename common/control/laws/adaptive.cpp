@@ -102,6 +102,8 @@ class Adaptive final : public Law {
     return LawStatus::kOk;
   }
 
+  void archive(StateArchive& state) noexcept override { state(estimate_, learnt_, commanded_); }
+
  private:
   /// What one step adds to the estimate; Y_ is this step's.
   DynamicParameters learning(double dt_s, const JointVector& s) const noexcept {

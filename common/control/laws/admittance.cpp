@@ -75,6 +75,10 @@ class Admittance final : public Law {
     return LawStatus::kOk;
   }
 
+  void archive(StateArchive& state) noexcept override {
+    for (MassSpringDamper::State& axis : z_) state(axis.z, axis.zd);
+  }
+
  private:
   static LawStatus check(const LawInput& input) noexcept {
     if (!input.reference.has_task) return LawStatus::kMissingReference;

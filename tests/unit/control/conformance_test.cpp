@@ -130,6 +130,30 @@ TEST_P(LawConformance, ResetForgetsEverything) {
   }
 }
 
+TEST_P(LawConformance, GoesOnFromACheckpointWithTheSameBits) {
+  for (const RobotModel& robot : robots()) {
+    const auto inputs = randomInputs(robot, 12);
+    const std::span<const LawInput> first(inputs.data(), inputs.size() / 2),
+        second(inputs.data() + first.size(), first.size());
+    const auto original = make(robot), restored = make(robot);
+    original->reset();
+    restored->reset();
+    for (const LawInput& input : first) (void)answer(*original, robot, input);
+    for (const LawInput& input : second) (void)answer(*restored, robot, input);  // another past, to be forgotten
+
+    std::array<std::byte, 8192> bytes{};
+    StateArchive saved = StateArchive::into(bytes);
+    original->archive(saved);
+    ASSERT_TRUE(saved.isGood());
+    StateArchive read = StateArchive::from(std::span(bytes).first(saved.size()));
+    restored->archive(read);
+    ASSERT_TRUE(read.isWhole());
+    for (const LawInput& input : second) {
+      EXPECT_TRUE(answer(*restored, robot, input) == answer(*original, robot, input)) << robot.name;
+    }
+  }
+}
+
 TEST_P(LawConformance, NeverAllocates) {
   if (!AllocationGuard::isActive()) GTEST_SKIP() << "the sanitizer has its own malloc";
   for (const RobotModel& robot : robots()) {
