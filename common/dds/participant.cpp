@@ -2,8 +2,13 @@
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastdds/rtps/transport/test_UDPv4TransportDescriptor.h>
 #include <algorithm>
+#include <atomic>
+#include <charconv>
 #include <chrono>
+#include <cstdlib>
+#include <cstring>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <sstream>
@@ -39,6 +44,37 @@ std::optional<Peer> decodePeer(const std::string& text, const GuidPrefix& prefix
   return lines.fail() ? std::nullopt : std::optional(peer);
 }
 
+/// BATON_LOSE_ONE_IN=N in the environment: of N datagrams sent one, on average, is thrown away, to show what a bad
+/// network does to a run. 0 without it.
+std::uint64_t loseOneIn() {
+  const char* text = std::getenv("BATON_LOSE_ONE_IN");
+  if (text == nullptr) return 0;
+  std::uint64_t one_in = 0;
+  const auto [end, error] = std::from_chars(text, text + std::strlen(text), one_in);
+  if (error != std::errc() || *end != '\0' || one_in < 2) {
+    throw UsageError(std::string("BATON_LOSE_ONE_IN: expected a whole number from 2, found ") + text);
+  }
+  return one_in;
+}
+
+template <class Transport>
+std::shared_ptr<Transport> loopbackUdp() {
+  auto udp = std::make_shared<Transport>();
+  udp->interfaceWhiteList = {"127.0.0.1"};  // the default would open every interface of the machine
+  udp->sendBufferSize = kSocketBuffer;
+  udp->receiveBufferSize = kSocketBuffer;
+  return udp;
+}
+
+/// Scatters the losses over the datagrams of this process; the count goes on whatever is sent again.
+bool isLost(std::uint64_t one_in) {
+  static std::atomic<std::uint64_t> count{0};
+  std::uint64_t x = ++count * 0x9E37'79B9'7F4A'7C15u;  // splitmix64
+  x = (x ^ (x >> 30)) * 0xBF58'476D'1CE4'E5B9u;
+  x = (x ^ (x >> 27)) * 0x94D0'49BB'1331'11EBu;
+  return (x ^ (x >> 31)) % one_in == 0;
+}
+
 GuidPrefix toPrefix(const rtps::GUID_t& guid) { return prefixOf(toGuid(guid)); }
 
 DomainParticipantQos participantQos(const ParticipantOptions& options, const Peer& self) {
@@ -48,11 +84,13 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
   qos.user_data().data_vec({data.begin(), data.end()});
 
   qos.transport().use_builtin_transports = false;
-  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-  udp->interfaceWhiteList = {"127.0.0.1"};  // the default would open every interface of the machine
-  udp->sendBufferSize = kSocketBuffer;
-  udp->receiveBufferSize = kSocketBuffer;
-  qos.transport().user_transports.push_back(udp);
+  if (const std::uint64_t one_in = loseOneIn(); one_in > 0) {
+    auto udp = loopbackUdp<eprosima::fastdds::rtps::test_UDPv4TransportDescriptor>();
+    udp->messages_filter_ = [one_in](rtps::CDRMessage_t&) { return isLost(one_in); };
+    qos.transport().user_transports.push_back(udp);
+  } else {
+    qos.transport().user_transports.push_back(loopbackUdp<eprosima::fastdds::rtps::UDPv4TransportDescriptor>());
+  }
   if (options.transport == Transport::kSharedMemory) {
     qos.transport().user_transports.push_back(
         std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>());
