@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "dds/types.hpp"
+#include "msg/checkpoint.h"
 #include "msg/loop.h"
 #include "msg/parameter.h"
 #include "msg/record.h"
@@ -35,9 +36,12 @@ inline constexpr Topic<msg::Contact>          kContact         {"contact",      
 inline constexpr Topic<msg::Reference>        kReference       {"reference",         "baton::msg::Reference",        Profile::kLoop};
 inline constexpr Topic<msg::JointCommand>     kJointCommand    {"joint_command",     "baton::msg::JointCommand",     Profile::kLoop};
 inline constexpr Topic<msg::JointCommand>     kShadowCommand   {"shadow_command",    "baton::msg::JointCommand",     Profile::kLoop};
+inline constexpr Topic<msg::Checkpoint>       kCheckpoint      {"checkpoint",        "baton::msg::Checkpoint",       Profile::kLoop};
 inline constexpr Topic<msg::SimRequest>       kSimRequest      {"sim_request",       "baton::msg::SimRequest",       Profile::kRequest};
 inline constexpr Topic<msg::SimReply>         kSimReply        {"sim_reply",         "baton::msg::SimReply",         Profile::kRequest};
 inline constexpr Topic<msg::SimStatus>        kSimStatus       {"sim_status",        "baton::msg::SimStatus",        Profile::kStatus};
+inline constexpr Topic<msg::Rewind>           kRewind          {"rewind",            "baton::msg::Rewind",           Profile::kEvent};
+inline constexpr Topic<msg::RewindAck>        kRewindAck       {"rewind_ack",        "baton::msg::RewindAck",        Profile::kEvent};
 inline constexpr Topic<msg::TimingStatus>     kTimingStatus    {"timing_status",     "baton::msg::TimingStatus",     Profile::kStatus};
 inline constexpr Topic<msg::SwapRequest>      kSwapRequest     {"swap_request",      "baton::msg::SwapRequest",      Profile::kRequest};
 inline constexpr Topic<msg::SwapPlan>         kSwapPlan        {"swap_plan",         "baton::msg::SwapPlan",         Profile::kEvent};

@@ -62,4 +62,19 @@ CLI::Option* addTransport(CLI::App& app, dds::Transport& transport) {
       ->default_str(dds::toString(transport));
 }
 
+void addScheduling(CLI::App& app, Scheduling& scheduling) {
+  const auto complaint = [](const std::string& text) -> std::string {
+    try {
+      (void)parseCpus(text);
+      return "";
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+  };
+  app.add_option("--fifo", scheduling.fifo_priority, "SCHED_FIFO priority of the loop's processes, where allowed")
+      ->check(CLI::Range(1, 99));
+  app.add_option("--cpus", scheduling.cpus, "cores that the loop's processes stay on: 0,2")
+      ->check(CLI::Validator(complaint, "LIST"));
+}
+
 }  // namespace baton

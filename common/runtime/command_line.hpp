@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "dds/types.hpp"
+#include "runtime/scheduling.hpp"
 
 namespace baton {
 
@@ -23,5 +24,7 @@ CLI::Option* addCell(CLI::App& app, std::string& cell);
 CLI::Option* addDomain(CLI::App& app, int& domain);
 /// --transport: udp or shm.
 CLI::Option* addTransport(CLI::App& app, dds::Transport& transport);
+/// --fifo and --cpus.
+void addScheduling(CLI::App& app, Scheduling& scheduling);
 
 }  // namespace baton

@@ -266,11 +266,14 @@ void readSwaps(const YamlMap& map, Scenario& scenario) {
   }
 }
 
-RecordingConfig readRecording(const YamlMap& map) {
+RecordingConfig readRecording(const YamlMap& map, const Scenario& scenario) {
   RecordingConfig recording;
+  constexpr double kCheckpoint_s = 1.0;
+  recording.checkpoint_steps = std::max<std::uint64_t>(1, std::llround(kCheckpoint_s / scenario.stepSeconds()));
   const auto node = map.find("recording");
   if (!node) return recording;
-  const YamlMap given = node->map({"enabled", "compression", "credit_steps"});
+  const YamlMap given = node->map({"enabled", "compression", "credit_steps", "checkpoint_s"});
+  if (const auto every = given.find("checkpoint_s")) recording.checkpoint_steps = readSteps(*every, scenario);
   recording.enabled = given.booleanOr("enabled", recording.enabled);
   if (const auto word = given.find("compression")) {
     recording.compression = word->oneOf<std::string>({{"none", "none"}, {"lz4", "lz4"}, {"zstd", "zstd"}});
@@ -324,7 +327,7 @@ Scenario readScenario(const std::string& file, const std::string& text,
   }
   readBaton(map, scenario);
   readSwaps(map, scenario);
-  scenario.recording = readRecording(map);
+  scenario.recording = readRecording(map, scenario);
   return scenario;
 }
 

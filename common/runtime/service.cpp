@@ -126,7 +126,40 @@ void Service::event(msg::Severity severity, const std::string& kind, const std::
 
 void Service::stepDone(std::uint64_t step) {
   last_done_ = std::max(last_done_.value_or(0), step);
+  considerRewind();
   if (end_step_ && step >= *end_step_) asio::post(executor_, [this] { publishManifest(); });
+}
+
+void Service::onRewind(std::function<bool(std::uint64_t)> is_quiet, std::function<void()> forget) {
+  rewinding_.is_quiet = std::move(is_quiet);
+  rewinding_.forget = std::move(forget);
+  rewinding_.ack = &output(dds::topics::kRewindAck, {kPlantName});
+  input(dds::topics::kRewind, {kPlantName},
+        [this](const msg::Rewind& rewind, const dds::RawSample&) { onRewindMessage(rewind); });
+}
+
+void Service::onRewindMessage(const msg::Rewind& rewind) {
+  if (manifest_out_) return;
+  rewinding_.owed.reset();
+  if (rewind.phase() == msg::REWIND_CANCEL) return;
+  if (rewind.phase() == msg::REWIND_COMMIT) {
+    rewinding_.forget();
+    last_done_.reset();
+    step_ = 0;
+  }
+  rewinding_.owed = rewind;
+  considerRewind();
+}
+
+void Service::considerRewind() {
+  const std::optional<msg::Rewind>& owed = rewinding_.owed;
+  if (!owed || (owed->phase() == msg::REWIND_PREPARE && !rewinding_.is_quiet(owed->at_step()))) return;
+  msg::RewindAck ack;
+  ack.take(owed->take());
+  ack.phase(owed->phase());
+  ack.name(options_.name);
+  rewinding_.ack->write(ack);
+  rewinding_.owed.reset();
 }
 
 void Service::runEnded(std::uint64_t step, bool clean) {

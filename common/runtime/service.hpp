@@ -66,6 +66,11 @@ class Service {
   void runEnded(std::uint64_t step, bool clean);
   /// The manifest is out: what is published from now on is not part of the run. From handlers.
   [[nodiscard]] bool isOver() const { return manifest_out_; }
+  /// Takes part in resets. `is_quiet(step)`: everything of that step is here and answered, so nothing of the run so far
+  /// can still arrive. `forget` goes back to the state from before the first step. Both are called under mutex().
+  void onRewind(std::function<bool(std::uint64_t)> is_quiet, std::function<void()> forget);
+  /// Something has arrived that is_quiet() may have waited for. From handlers.
+  void considerRewind();
   /// This service takes no part in the steps: at the end of the run nothing more is waited for.
   void answersNoSteps() { answers_steps_ = false; }
   /// Called once on the executor when the run has ended and this service's manifest is out.
@@ -102,6 +107,7 @@ class Service {
   void tellLosses();
   void checkBarrier();
   void publishManifest();
+  void onRewindMessage(const msg::Rewind& rewind);
   void publishStatus(msg::ServiceState state, const std::string& text);
   void addToManifest(dds::Profile profile, std::function<msg::StreamManifest()> manifest);
 
@@ -121,6 +127,13 @@ class Service {
   dds::Writer<msg::ServiceStatus>* status_ = nullptr;
   dds::Writer<msg::Event>* events_ = nullptr;
   dds::Writer<msg::ServiceManifest>* manifest_ = nullptr;
+  struct Rewinding {
+    std::function<bool(std::uint64_t)> is_quiet;
+    std::function<void()> forget;
+    dds::Writer<msg::RewindAck>* ack = nullptr;
+    std::optional<msg::Rewind> owed;  // an answer to this, once quiet
+  };
+  Rewinding rewinding_;
   std::string told_missing_ = "?";  // what the status said last
   std::function<void()> on_end_;
   std::function<void()> on_ready_;

@@ -25,12 +25,16 @@ bool parseServiceOptions(int argc, char** argv, const std::string& role, Service
   app.add_option("--run", options.run, "id of the run within the cell")->required();
   addDomain(app, options.domain);
   addTransport(app, options.transport);
+  app.add_option("--checkpoint", options.checkpoint, "checkpoint to go on from, instead of the scenario's start");
+  addScheduling(app, options.scheduling);
   bool no_recording = false;
   app.add_flag("--no-recording", no_recording, "no recorder takes part in this run");
   if (role == "controller") {
     app.add_option("--name", options.name, "the controller's name in the scenario")->required();
     app.add_option("--law", options.law, "its law, to be checked against the scenario");
   }
+  if (role == kPlantName)
+    app.add_flag("--paused", options.starts_paused, "wait for `sim resume` before the first step");
   if (role == "recorder") app.add_option("--out", options.out, "file to write (MCAP)")->required();
   if (!parseCommandLine(app, argc, argv)) return false;
   options.recording = !no_recording;
@@ -44,6 +48,9 @@ std::vector<std::string> toArguments(const ServiceOptions& options) {
                                      "--domain",    std::to_string(options.domain),
                                      "--transport", dds::toString(options.transport)};
   if (!options.robot_file.empty()) arguments.insert(arguments.end(), {"--robot", options.robot_file});
+  if (!options.checkpoint.empty()) arguments.insert(arguments.end(), {"--checkpoint", options.checkpoint});
+  for (std::string& argument : toArguments(options.scheduling)) arguments.push_back(std::move(argument));
+  if (options.starts_paused && options.role == kPlantName) arguments.emplace_back("--paused");
   if (!options.recording) arguments.emplace_back("--no-recording");
   if (options.role == "controller") arguments.insert(arguments.end(), {"--name", options.name, "--law", options.law});
   if (options.role == "recorder") arguments.insert(arguments.end(), {"--out", options.out});

@@ -6,6 +6,7 @@
 
 #include "dds/participant.hpp"
 #include "runtime/scenario.hpp"
+#include "runtime/scheduling.hpp"
 
 namespace baton {
 
@@ -21,6 +22,9 @@ struct ServiceOptions {
   bool recording = true;  // whether a recorder takes part
   std::string law;        // controller: must agree with the scenario when given
   std::string out;        // recorder: file to write
+  Scheduling scheduling;
+  std::string checkpoint;      // file to start from instead of step 0; empty: none
+  bool starts_paused = false;  // plant: waits for a request before its first step
 
   [[nodiscard]] dds::ParticipantOptions participant() const;
 };

@@ -10,7 +10,7 @@ using Step = unsigned long long;  // what %llu prints
 }  // namespace
 
 BatonArbiter::BatonArbiter(const ArbiterConfig& config)
-    : config_(config), holder_(config.holder), failed_(config.members.size(), 0) {}
+    : config_(config), first_holder_(config.holder), holder_(config.holder), failed_(config.members.size(), 0) {}
 
 void BatonArbiter::act(Kind kind, const HandoverPlan& plan, const char* format, ...) noexcept {
   if (queue_size_ == kQueue) return;  // taken at every step; a step makes two at most
@@ -213,6 +213,33 @@ void BatonArbiter::memberFailed(int member, std::uint64_t open_step, const char*
 void BatonArbiter::memberReturned(int member) noexcept {
   const auto index = static_cast<std::size_t>(member);
   if (member >= 0 && index < failed_.size() && member != holder_) failed_[index] = 0;
+}
+
+bool BatonArbiter::isQuiet(std::uint64_t step) const noexcept {
+  return phase_ == Phase::kIdle && !holder_failed_at_ && !changedAt(step);
+}
+
+void BatonArbiter::archive(StateArchive& state) noexcept {
+  state(last_plan_id_, holder_, contact_);
+  for (char& failed : failed_) state(failed);
+}
+
+void BatonArbiter::prepareRewind() noexcept {
+  if (phase_ != Phase::kIdle) drop(Kind::kRefused, "the run is reset");
+}
+
+void BatonArbiter::rewind() noexcept {
+  phase_ = Phase::kIdle;
+  holder_ = first_holder_;
+  contact_ = false;
+  changed_at_.reset();
+  handover_at_.reset();
+  handed_over_by_ = kBrake;
+  holder_failed_at_.reset();
+  if (hasFailed(holder_)) {
+    holder_failed_at_ = 0;
+    std::snprintf(failure_.data(), failure_.size(), "it had failed before the reset");
+  }
 }
 
 void BatonArbiter::runEnded() noexcept {

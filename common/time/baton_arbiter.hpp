@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "base/state_archive.hpp"
 #include "base/types.hpp"
 
 namespace baton {
@@ -101,6 +102,19 @@ class BatonArbiter {
   [[nodiscard]] const std::vector<ArbiterMember>& members() const noexcept { return config_.members; }
   [[nodiscard]] bool hasFailed(int member) const noexcept;
 
+  /// Neither a handover nor a failover is under way at this step, so that holder and failures are all there is to
+  /// remember.
+  [[nodiscard]] bool isQuiet(std::uint64_t step) const noexcept;
+  /// What to remember at a step at which isQuiet().
+  void archive(StateArchive& state) noexcept;
+  /// A handover under way is refused: the run goes back to its first step.
+  void prepareRewind() noexcept;
+  /// Back to the state before the first step. Who has failed has failed still; a holder that has is followed by the
+  /// fallback.
+  void rewind() noexcept;
+  /// From now on the run ends at this step.
+  void endAt(std::uint64_t step) noexcept { config_.end_step = step; }
+
   /// Next action to publish, oldest first.
   [[nodiscard]] std::optional<ArbiterAction> takeAction() noexcept;
 
@@ -111,6 +125,7 @@ class BatonArbiter {
   void drop(ArbiterAction::Kind outcome, const char* reason) noexcept;
 
   ArbiterConfig config_;
+  int first_holder_;
   Phase phase_ = Phase::kIdle;
   HandoverPlan plan_;
   std::uint64_t last_plan_id_ = 0;

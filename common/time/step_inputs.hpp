@@ -32,6 +32,11 @@ class StepInputs {
   /// Whether a sample for `step` would still be of use; ask before overwriting the slot.
   [[nodiscard]] bool wants(std::size_t index, std::uint64_t step) const noexcept;
 
+  /// Whether input `index` for `step` has arrived.
+  [[nodiscard]] bool has(std::size_t index, std::uint64_t step) const noexcept {
+    return arrived_[index][slot(step)] == step;
+  }
+
   void done(std::uint64_t step) noexcept { last_done_ = step; }
   [[nodiscard]] std::optional<std::uint64_t> lastDone() const noexcept { return last_done_; }
 

@@ -15,6 +15,7 @@ const char* toString(Hold hold) noexcept {
     case Hold::kHandover: return "the outgoing controller's last command";
     case Hold::kSwap: return "the controllers to acknowledge a swap";
     case Hold::kRecorder: return "the recorder";
+    case Hold::kRewind: return "all services to forget the run";
   }
   return "?";
 }
@@ -32,18 +33,35 @@ void StepMaster::start() noexcept {
 
 void StepMaster::pause() noexcept {
   if (phase_ == SimPhase::kRunning) phase_ = SimPhase::kPaused;
-  steps_left_ = 0;
+  pause_step_ = 0;
+}
+
+bool StepMaster::pauseAt(std::uint64_t step) noexcept {
+  if (isOver() || step <= step_ || (config_.end_step > 0 && step >= config_.end_step)) return false;
+  pause_step_ = step;
+  return true;
+}
+
+bool StepMaster::endAt(std::uint64_t step) noexcept {
+  if (isOver() || step <= step_ || (config_.end_step > 0 && step > config_.end_step)) return false;
+  config_.end_step = step;
+  return true;
 }
 
 void StepMaster::resume() noexcept {
-  if (phase_ == SimPhase::kPaused) phase_ = SimPhase::kRunning;
-  steps_left_ = 0;
+  if (phase_ == SimPhase::kPaused) {
+    phase_ = SimPhase::kRunning;  // to a later pause, if one was asked for meanwhile
+  } else {
+    pause_step_ = 0;
+  }
 }
 
 void StepMaster::stepBy(std::uint64_t steps) noexcept {
   if (isOver() || phase_ == SimPhase::kStarting || steps == 0) return;
+  // Steps asked for while others are still being run come on top of those.
+  const bool is_stepping = phase_ == SimPhase::kRunning && pause_step_ > step_;
+  pause_step_ = (is_stepping ? pause_step_ : step_) + steps;
   phase_ = SimPhase::kRunning;
-  steps_left_ += steps;
 }
 
 void StepMaster::finish() noexcept {
@@ -52,6 +70,15 @@ void StepMaster::finish() noexcept {
 
 void StepMaster::abort() noexcept {
   if (!isOver()) phase_ = SimPhase::kAborted;
+}
+
+void StepMaster::rewind() noexcept {
+  is_rewinding_ = false;
+  if (isOver() || phase_ == SimPhase::kStarting) return;
+  step_ = acknowledged_ = config_.first_step;
+  pause_step_ = 0;
+  awaits_swap_ = false;
+  openStep();
 }
 
 bool StepMaster::contactArrived(std::uint64_t step) noexcept {
@@ -83,10 +110,11 @@ Hold StepMaster::hold() const noexcept {
     case SimPhase::kStarting: return Hold::kNotStarted;
     case SimPhase::kFinished:
     case SimPhase::kAborted: return Hold::kEnded;
-    case SimPhase::kPaused: return Hold::kPaused;
+    case SimPhase::kPaused: return is_rewinding_ ? Hold::kRewind : Hold::kPaused;
     case SimPhase::kRunning: break;
   }
   if (const Hold inputs = inputsHold(); inputs != Hold::kNone) return inputs;
+  if (is_rewinding_) return Hold::kRewind;
   if (awaits_swap_) return Hold::kSwap;
   const bool is_ahead = step_ > acknowledged_ && step_ - acknowledged_ >= config_.credit;
   if (config_.credit > 0 && is_ahead) return Hold::kRecorder;
@@ -99,7 +127,7 @@ void StepMaster::advance() noexcept {
   openStep();
   if (config_.end_step > 0 && step_ >= config_.end_step) {
     phase_ = SimPhase::kFinished;
-  } else if (steps_left_ > 0 && --steps_left_ == 0) {
+  } else if (step_ == pause_step_) {
     phase_ = SimPhase::kPaused;
   }
 }

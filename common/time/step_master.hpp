@@ -18,23 +18,29 @@ enum class Hold {
   kCommand,   // the holder of the baton has not answered
   kHandover,  // at the step of a swap: the outgoing controller's last command is not here
   kSwap,      // a swap waits to be acknowledged
-  kRecorder   // the recorder is too far behind
+  kRecorder,  // the recorder is too far behind
+  kRewind     // the run is about to go back to its first step
 };
 [[nodiscard]] const char* toString(Hold hold) noexcept;
 
 struct StepMasterConfig {
-  std::uint64_t end_step = 0;  // the step at which the run ends, 0 for never
-  bool needs_contact = false;  // there is an environment
-  std::uint64_t credit = 0;    // steps the plant may run past what the recorder has; 0: no recorder
+  std::uint64_t first_step = 0;  // at which the run begins
+  std::uint64_t end_step = 0;    // at which it ends, 0 for never
+  bool needs_contact = false;    // there is an environment
+  std::uint64_t credit = 0;      // steps the plant may run past what the recorder has; 0: no recorder
 };
 
 class StepMaster {
  public:
-  explicit StepMaster(const StepMasterConfig& config) noexcept : config_(config) {}
+  explicit StepMaster(const StepMasterConfig& config) noexcept
+      : config_(config), step_(config.first_step), acknowledged_(config.first_step) {}
 
   // --- news
-  void start() noexcept;  // the barrier is open: step 0 begins
+  void start() noexcept;  // the barrier is open: the first step begins
   void pause() noexcept;
+  /// Pauses, or ends, when this step opens. Returns false when it is not still to come, or lies after the run's end.
+  [[nodiscard]] bool pauseAt(std::uint64_t step) noexcept;
+  [[nodiscard]] bool endAt(std::uint64_t step) noexcept;
   void resume() noexcept;
   void stepBy(std::uint64_t steps) noexcept;  // run that many (more) steps, then pause
   void finish() noexcept;                     // orderly end here
@@ -46,6 +52,10 @@ class StepMaster {
   void recorderAcknowledged(std::uint64_t step) noexcept;
   /// The open step is the first of a new holder: the outgoing one's command is needed as well.
   void needOutgoing(bool need) noexcept { needs_outgoing_ = need; }
+  /// The open step is to be the last: the run goes back to its first step, or it does not after all.
+  void holdForRewind(bool hold) noexcept { is_rewinding_ = hold; }
+  /// Back to the first step, running or paused as now. Starts nothing that has not started or is over.
+  void rewind() noexcept;
   /// A swap must be acknowledged before the open step ends.
   void awaitSwap(bool wait) noexcept { awaits_swap_ = wait; }
 
@@ -71,13 +81,14 @@ class StepMaster {
   StepMasterConfig config_;
   SimPhase phase_ = SimPhase::kStarting;
   std::uint64_t step_ = 0;
-  std::uint64_t steps_left_ = 0;  // of a stepBy, 0 when running freely
+  std::uint64_t pause_step_ = 0;  // 0: none
   std::uint64_t acknowledged_ = 0;
   bool has_contact_ = false;
   bool has_command_ = false;
   bool has_outgoing_ = false;
   bool needs_outgoing_ = false;
   bool awaits_swap_ = false;
+  bool is_rewinding_ = false;
 };
 
 }  // namespace baton

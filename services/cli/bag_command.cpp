@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "bag_hash.hpp"
+#include "base/error.hpp"
 #include "mcap/reader.hpp"
 #include "runtime/json.hpp"
 
@@ -234,8 +236,43 @@ nlohmann::ordered_json toJson(const BagSummary& bag) {
 
 struct BagRequest {
   std::string file;
+  std::string other;  // hash: to compare with
   bool json = false;
 };
+
+/// Prints the hash and says whether the payloads give it.
+ExitCode hash(const BagRequest& request) {
+  const HashedRun run = hashRun(request.file);
+  const std::optional<std::uint64_t> broken = run.firstBroken();
+  nlohmann::ordered_json json{{"file", request.file},
+                              {"hash", std::to_string(run.hash())},
+                              {"first_step", run.steps.begin()->first},
+                              {"last_step", run.steps.rbegin()->first},
+                              {"payloads_agree", !broken}};
+  if (broken) json["first_broken_step"] = *broken;
+  std::string verdict = broken ? "the payloads of step " + std::to_string(*broken) + " do not give the hash after it"
+                               : "the recorded payloads give it, step by step";
+  bool is_good = !broken;
+  if (!request.other.empty()) {
+    const std::optional<Parting> parting = firstDifference(run, hashRun(request.other));
+    json["same_as"] = {{"file", request.other}, {"same", !parting}};
+    if (parting) {
+      json["same_as"]["first_different_step"] = parting->step;
+      json["same_as"]["topic"] = parting->topic;
+    }
+    verdict += parting ? "\ndiffers from " + request.other + " first at step " + std::to_string(parting->step) +
+                             " in " + parting->topic
+                       : "\nthe same as " + request.other + " wherever both have a step";
+    is_good = is_good && !parting;
+  }
+  if (request.json) {
+    std::puts(toText(json).c_str());
+  } else {
+    std::printf("%s of steps %s to %s\n%s\n", json["hash"].get<std::string>().c_str(),
+                json["first_step"].dump().c_str(), json["last_step"].dump().c_str(), verdict.c_str());
+  }
+  return is_good ? ExitCode::kOk : ExitCode::kFailed;
+}
 
 }  // namespace
 
@@ -259,6 +296,16 @@ void addBagCommand(CLI::App& app, ExitCode& exit_code) {
     }
     exit_code = exitCodeOf(verdictOn(summary));
   });
+  CLI::App* hash_command =
+      bag->add_subcommand("hash", "the hash of a recorded run, computed again from its payloads; two files: compared");
+  hash_command->footer(
+      "Exit codes: 0 the payloads give the hash that the run had, and the other file has the same; 1 otherwise, with "
+      "the "
+      "first step.");
+  hash_command->add_option("file", request->file, "recording of a run (MCAP)")->required();
+  hash_command->add_option("other", request->other, "another one, to compare step by step");
+  hash_command->add_flag("--json", request->json, "as a JSON object");
+  hash_command->callback([request, &exit_code] { exit_code = hash(*request); });
 }
 
 }  // namespace baton

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bag_command.hpp"
+#include "branch_command.hpp"
 #include "demo_command.hpp"
 #include "figures_command.hpp"
 #include "laws_command.hpp"
@@ -33,6 +34,7 @@ int main(int argc, char** argv) {
     baton::addParamCommand(app);
     baton::addReplayCommand(app, exit_code);
     baton::addBagCommand(app, exit_code);
+    baton::addBranchCommand(app, exit_code);
     baton::addMetricsCommand(app);
     baton::addFiguresCommand(app, exit_code);
     baton::addModelCommand(app, exit_code);

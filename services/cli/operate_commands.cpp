@@ -6,6 +6,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "latest_by_name.hpp"
 #include "messages/state_names.hpp"
@@ -181,6 +182,13 @@ void swap(const Target& target, const std::string& name, std::uint64_t at_step, 
   }
 }
 
+/// The step at a time of the run.
+std::uint64_t stepAt(CellClient& client, double time_s) {
+  const double steps = std::round(time_s * 1e9 / static_cast<double>(simStatus(client).step_ns()));
+  if (!(steps >= 1.0 && steps < 1e18)) throw UsageError("--at-time: expected a time after the first step");
+  return static_cast<std::uint64_t>(steps);
+}
+
 /// Waits until the run stands still again, at `goal` or wherever it was stopped; as long as it moves.
 std::uint64_t stepReached(CellClient& client, std::uint64_t goal) {
   std::uint64_t step = simStatus(client).step();
@@ -198,9 +206,10 @@ std::uint64_t stepReached(CellClient& client, std::uint64_t goal) {
   }
 }
 
-void sim(const Target& target, const msg::SimRequest& what, ExitCode& exit_code) {
+void sim(const Target& target, const msg::SimRequest& what, const std::optional<double>& at_s, ExitCode& exit_code) {
   CellClient client(CellClient::find(target.domain, target.cell));
   msg::SimRequest request = what;
+  if (at_s) request.at_step(stepAt(client, *at_s));
   request.request_id(CellClient::newRequestId());
   auto reply = client.ask<msg::SimRequest, msg::SimReply>(
       dds::topics::kSimRequest, request, dds::topics::kSimReply,
@@ -214,7 +223,11 @@ void sim(const Target& target, const msg::SimRequest& what, ExitCode& exit_code)
                      {"accepted", reply->accepted()}, {"step", reply->step()}, {"reason", reply->reason().c_str()}})
               << '\n';
   } else if (reply->accepted()) {
-    std::printf("done at step %llu\n", ull{reply->step()});
+    if (request.at_step() > 0) {
+      std::printf("asked at step %llu, for step %llu\n", ull{reply->step()}, ull{request.at_step()});
+    } else {
+      std::printf("done at step %llu\n", ull{reply->step()});
+    }
   } else {
     std::printf("refused at step %llu: %s\n", ull{reply->step()}, reply->reason().c_str());
   }
@@ -248,19 +261,26 @@ void addSimCommands(CLI::App& app, const std::shared_ptr<Target>& target, ExitCo
   CLI::App* command = app.add_subcommand("sim", "pause, resume, step, change the rate, stop");
   command->require_subcommand(1);
   const auto request = std::make_shared<msg::SimRequest>();
+  const auto at_s = std::make_shared<std::optional<double>>();
   const auto add = [&](const char* name, const char* help, msg::SimAction action) {
     CLI::App* sub = command->add_subcommand(name, help);
     addCellOptions(*sub, target->cell, target->domain);
     sub->add_flag("--json", target->json, "print JSON");
     sub->callback([=, &exit_code] {
       request->action(action);
-      sim(*target, *request, exit_code);
+      sim(*target, *request, *at_s, exit_code);
     });
     return sub;
   };
-  add("pause", "hold the run before its next step", msg::SIM_PAUSE);
+  const auto addWhen = [=](CLI::App* sub) {
+    auto* at = sub->add_option_function<std::uint64_t>(
+        "--at", [request](const std::uint64_t& step) { request->at_step(step); }, "when this step opens, not here");
+    sub->add_option("--at-time", *at_s, "the same in seconds of the run")->excludes(at);
+  };
+  addWhen(add("pause", "hold the run before its next step", msg::SIM_PAUSE));
   add("resume", "go on", msg::SIM_RESUME);
-  add("stop", "end the run here, in order", msg::SIM_STOP);
+  addWhen(add("stop", "end the run here, in order", msg::SIM_STOP));
+  add("reset", "back to the first step; the processes stay", msg::SIM_RESET);
   add("step", "run N steps, then pause", msg::SIM_STEP)
       ->add_option_function<std::uint64_t>(
           "n", [request](const std::uint64_t& n) { request->steps(n); }, "how many steps")

@@ -66,6 +66,7 @@ void addRunOptions(CLI::App& command, RunRequest& request) {
   command.add_option("--out", request.out, "file to record to (default: in the run's folder)");
   command.add_flag("--overwrite", request.overwrite, "replace the file --out names");
   command.add_flag("--no-recording", request.no_recording, "run without a recorder");
+  addScheduling(command, request.scheduling);
   command.add_option("--restarts", request.restarts, "how often a controller that dies is started again, to stand by")
       ->check(CLI::Range(0, 1000));
 }
@@ -251,6 +252,7 @@ void addRunCommands(CLI::App& app, ExitCode& exit_code) {
 
   CLI::App* up_command = app.add_subcommand("up", "start a scenario and leave it running");
   addRunOptions(*up_command, *request);
+  up_command->add_flag("--paused", request->paused, "wait for `baton sim resume` or `sim step` before the first step");
   up_command->callback([=, &exit_code] { up(*request, exit_code); });
 
   CLI::App* down_command = app.add_subcommand("down", "end the run in a cell, in order, and tell how it went");

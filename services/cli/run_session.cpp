@@ -128,6 +128,9 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
                                      "--domain",    std::to_string(info_.domain),
                                      "--transport", dds::toString(info_.transport),
                                      "--restarts",  std::to_string(request.restarts)};
+  if (!request.checkpoint.empty()) arguments.insert(arguments.end(), {"--checkpoint", request.checkpoint});
+  for (std::string& argument : toArguments(request.scheduling)) arguments.push_back(std::move(argument));
+  if (request.paused) arguments.emplace_back("--paused");
   if (info_.recording.empty()) {
     arguments.emplace_back("--no-recording");
   } else {

@@ -11,6 +11,7 @@
 #include "dds/types.hpp"
 #include "msg/sim.h"
 #include "runtime/cell.hpp"
+#include "runtime/scheduling.hpp"
 
 namespace baton {
 
@@ -23,6 +24,9 @@ struct RunRequest {
   bool no_recording = false;
   bool overwrite = false;  // replace `out`
   int restarts = 0;
+  std::string checkpoint;  // to go on from; empty: the scenario's start
+  Scheduling scheduling;
+  bool paused = false;  // waits for a request before its first step
 };
 
 /// A supervisor's process. Attached, it ends with this one; detached, it lives on in the background.

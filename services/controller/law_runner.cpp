@@ -21,6 +21,7 @@ const ControllerConfig& configOf(const Service& service) {
 
 LawRunner::LawRunner(Service& service)
     : service_(service),
+      checkpoint_out_(service),
       config_(configOf(service)),
       info_(findLaw(config_.law)),
       law_(info_.make(service.scenario().robot, config_.parameters)),
@@ -35,6 +36,7 @@ LawRunner::LawRunner(Service& service)
   prepare(message_);
   ack_.effort().reserve(kMaxJoints);
   law_->reset();
+  checkpoint_out_.restore(*this);
   service.input(dds::topics::kPlantState, {kPlantName},
                 [this](const msg::PlantState& message, const dds::RawSample& sample) { onState(message, sample); });
   service.input(dds::topics::kReference, {kTrajectoryName},
@@ -45,6 +47,7 @@ LawRunner::LawRunner(Service& service)
   }
   service.input(dds::topics::kSwapPlan, {kPlantName},
                 [this](const msg::SwapPlan& plan, const dds::RawSample&) { onPlan(plan); });
+  service.onRewind([this](std::uint64_t step) { return isQuiet(step); }, [this] { forget(); });
   service.every(std::chrono::milliseconds(100), [this] {
     const std::lock_guard lock(service_.mutex());
     publishStatus();
@@ -58,6 +61,7 @@ void LawRunner::onState(const msg::PlantState& message, const dds::RawSample& sa
   if (!fromMessage(message, service_.scenario().robot.size(), decoded)) return;
   states_[slot] = decoded;
   holds_[slot] = config_.name == message.holder().c_str();
+  checkpoints_[slot] = message.checkpoint();
   hashes_[slot][kState] = dds::chainHash(0, sample.payload);
   arrived(kState, message.step());
 }
@@ -70,6 +74,7 @@ void LawRunner::onReference(const msg::Reference& message, const dds::RawSample&
   references_[slot] = decoded;
   hashes_[slot][kReference] = dds::chainHash(0, sample.payload);
   arrived(kReference, message.step());
+  service_.considerRewind();
 }
 
 void LawRunner::onContact(const msg::Contact& message, const dds::RawSample& sample) {
@@ -93,6 +98,7 @@ void LawRunner::compute(std::uint64_t step) {
   if (const auto last = inputs_.lastDone(); last && step > *last + 1) skipped_ += step - *last - 1;
   inputs_.done(step);
   service_.at(step);
+  if (checkpoints_[slot]) checkpoint_out_.save(step, *this);
   if (!holds && !last_command && !service_.scenario().hot_standby) {
     active_ = false;
     history_[slot].resize(0);
@@ -106,6 +112,25 @@ void LawRunner::compute(std::uint64_t step) {
   }
   if (forecast_plan_ && step >= forecast_step_) answerForecast();
   service_.stepDone(step);
+}
+
+bool LawRunner::isQuiet(std::uint64_t step) const {
+  // The reference comes a step early; everything else of the step is what it was computed from.
+  return inputs_.lastDone() && *inputs_.lastDone() >= step && inputs_.has(kReference, step + 1);
+}
+
+void LawRunner::forget() {
+  law_->reset();
+  inputs_ = StepInputs(info_.uses_force ? 3 : 2);
+  active_ = failing_ = false;
+  forecast_plan_.reset();
+  last_command_step_.reset();
+  for (JointVector& effort : history_) effort.resize(0);
+}
+
+void LawRunner::archive(StateArchive& state) {
+  state(active_);
+  law_->archive(state);
 }
 
 void LawRunner::evaluate(std::uint64_t step, bool continues) {

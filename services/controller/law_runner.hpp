@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "control/law.hpp"
+#include "runtime/checkpoint.hpp"
 #include "runtime/service.hpp"
 #include "time/step_inputs.hpp"
 
@@ -17,6 +18,9 @@ namespace baton {
 class LawRunner {
  public:
   explicit LawRunner(Service& service);
+
+  /// What the controller remembers from step to step.
+  void archive(StateArchive& state);
 
  private:
   enum Input : std::size_t { kState, kReference, kContact };
@@ -32,16 +36,20 @@ class LawRunner {
   void evaluate(std::uint64_t step, bool continues);
   void publish(std::uint64_t step, bool commands);
   void answerForecast();
+  [[nodiscard]] bool isQuiet(std::uint64_t step) const;
+  void forget();
   void publishStatus();
   [[nodiscard]] bool isIncoming(const msg::SwapPlan& plan) const;
 
   Service& service_;
+  Checkpoints checkpoint_out_;
   const ControllerConfig& config_;
   const LawInfo& info_;
   std::unique_ptr<Law> law_;
   StepInputs inputs_;
   Window<RobotState> states_;
-  Window<bool> holds_{};  // whether PlantState named us
+  Window<bool> holds_{};        // whether PlantState named us
+  Window<bool> checkpoints_{};  // whether it asked for our state
   Window<Reference> references_;
   Window<Contact> contacts_;
   Window<std::array<std::uint64_t, 3>> hashes_{};  // of the payloads, by input

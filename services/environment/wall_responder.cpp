@@ -21,11 +21,14 @@ WallResponder::WallResponder(Service& service)
       answer_(service.scenario()) {
   service.input(dds::topics::kPlantState, {kPlantName},
                 [this](const msg::PlantState& message, const dds::RawSample&) { onState(message); });
+  service.onRewind([this](std::uint64_t step) { return answered_ && *answered_ >= step; },
+                   [this] { answered_.reset(); });
 }
 
 void WallResponder::onState(const msg::PlantState& message) {
   if (!service_.isReady() || service_.isOver() || !answer_(message, message_)) return;
   contact_out_.write(message_);
+  answered_ = message.step();
   service_.at(message.step());
   service_.stepDone(message.step());
 }

@@ -17,6 +17,7 @@ class WallResponder {
   dds::Writer<msg::Contact>& contact_out_;
   ContactAnswer answer_;
   msg::Contact message_;
+  std::optional<std::uint64_t> answered_;  // the last state
 };
 
 }  // namespace baton

@@ -25,20 +25,25 @@ ArbiterConfig arbiterConfig(const Scenario& scenario) {
   return config;
 }
 
-StepMasterConfig masterConfig(const Scenario& scenario) {
+StepMasterConfig masterConfig(const Scenario& scenario, std::uint64_t first_step) {
   const bool has_credit = scenario.recording.enabled && scenario.mode == SimMode::kLockstep;
-  return {.end_step = scenario.end_step,
+  return {.first_step = first_step,
+          .end_step = scenario.end_step,
           .needs_contact = scenario.hasEnvironment(),
           .credit = has_credit ? scenario.recording.credit_steps : 0};
 }
+
+/// By an operator, not by the scenario.
+bool isAsked(const HandoverRequest& request) { return request.request_id != 0; }
 
 }  // namespace
 
 Plant::Plant(Service& service)
     : service_(service),
       scenario_(service.scenario()),
+      checkpoints_(service),
       arm_(scenario_.robot, scenario_.armConfig()),
-      master_(masterConfig(scenario_)),
+      master_(masterConfig(scenario_, checkpoints_.firstStep())),
       arbiter_(arbiterConfig(scenario_)),
       pacer_(scenario_.step_ns, scenario_.rate),
       timer_(service.executor()),
@@ -47,6 +52,7 @@ Plant::Plant(Service& service)
       state_out_(service.output(dds::topics::kPlantState, servicesBut(kPlantName, scenario_))),
       reply_out_(service.output(dds::topics::kSimReply)),
       status_out_(service.output(dds::topics::kSimStatus, servicesBut(kPlantName, scenario_))),
+      rewind_out_(service.output(dds::topics::kRewind, servicesBut(kPlantName, scenario_))),
       timing_out_(service.output(dds::topics::kTimingStatus)),
       plan_out_(service.output(dds::topics::kSwapPlan, withRecorder(controllerNames(scenario_), scenario_))),
       outcome_out_(service.output(dds::topics::kSwapOutcome, withRecorder({}, scenario_))) {
@@ -54,10 +60,9 @@ Plant::Plant(Service& service)
   speakers_.resize(scenario_.controllers.size());
   successors_.resize(scenario_.controllers.size());
   scheduled_.reserve(scenario_.swaps.size() + kMaxScheduled);
-  for (const PlannedSwap& swap : scenario_.swaps) {
-    scheduled_.push_back({.request_id = 0, .target = memberCalled(swap.to), .at_step = swap.at_step, .force = false});
-  }
+  scheduleSwaps();
   for (const std::string& name : servicesBut(kPlantName, scenario_)) waited_for_.insert(name);
+  resumeFromCheckpoint();
 
   if (scenario_.hasEnvironment()) {
     service.input(dds::topics::kContact, {kEnvironmentName},
@@ -77,10 +82,13 @@ Plant::Plant(Service& service)
   if (scenario_.recording.enabled) {
     service.input(dds::topics::kRecorderStatus, {kRecorderName},
                   [this](const msg::RecorderStatus& status, const dds::RawSample&) {
+                    if (status.take() != take_) return;
                     master_.recorderAcknowledged(status.acknowledged_step());
                     proceed();
                   });
   }
+  service.input(dds::topics::kRewindAck, servicesBut(kPlantName, scenario_),
+                [this](const msg::RewindAck& ack, const dds::RawSample&) { onRewindAck(ack); });
   service.onReady([this] {
     const std::lock_guard lock(service_.mutex());
     startWhenAllAreReady();
@@ -104,6 +112,11 @@ int Plant::memberCalled(std::string_view name) const {
   return found == members.end() ? kBrake : static_cast<int>(found - members.begin());
 }
 
+std::string Plant::holderText() const {
+  const std::string& name = nameOf(arbiter_.holder());
+  return name.empty() ? "the brake" : name;
+}
+
 const std::string& Plant::nameOf(int member) const {
   static const std::string kNobody;
   return member == kBrake ? kNobody : arbiter_.members()[static_cast<std::size_t>(member)].name;
@@ -113,10 +126,11 @@ void Plant::startWhenAllAreReady() {
   if (master_.phase() != SimPhase::kStarting || !service_.isReady() || !waited_for_.empty()) return;
   master_.start();
   started_ns_ = steadyNow();
-  pacer_.anchor(0, started_ns_);
+  pacer_.anchor(master_.step(), started_ns_);
   warned_step_ = kNever;
-  arbiter_.open(0);
-  service_.event(msg::SEVERITY_INFO, "start", scenario_.active + " holds the baton");
+  arbiter_.open(master_.step());
+  service_.event(msg::SEVERITY_INFO, "start", holderText() + " holds the baton");
+  if (service_.options().starts_paused) master_.pause();
   openStep();
   publishStatus();
   if (isRealtime()) {
@@ -135,6 +149,9 @@ void Plant::openStep() {
   hashes_ = {};
   master_.needOutgoing(arbiter_.outgoingAt(step) != kBrake);
   toMessage(service_.stampOf(step), arm_.state(), nameOf(arbiter_.holder()), chain_hash_, state_message_);
+  const bool has_checkpoint = scenario_.hasCheckpointAt(step) && arbiter_.isQuiet(step);
+  if (has_checkpoint) checkpoints_.save(step, *this);
+  state_message_.checkpoint(has_checkpoint);
   state_out_.write(state_message_);
   hashes_.state = dds::chainHash(0, state_out_.payload());
   if (arbiter_.holder() == kBrake) {
@@ -142,6 +159,40 @@ void Plant::openStep() {
     master_.commandArrived(step);
   }
   planSwaps();
+}
+
+void Plant::scheduleSwaps() {
+  scheduled_.clear();
+  for (const PlannedSwap& swap : scenario_.swaps) {
+    scheduled_.push_back({.request_id = 0, .target = memberCalled(swap.to), .at_step = swap.at_step, .force = false});
+  }
+}
+
+void Plant::resumeFromCheckpoint() {
+  if (!checkpoints_.restore(*this)) return;
+  // What the scenario plans for earlier has been asked for already; see planSwaps().
+  const std::uint64_t earliest = checkpoints_.firstStep() + scenario_.baton.margin_steps + 1;
+  std::erase_if(scheduled_, [&](const HandoverRequest& request) { return request.at_step < earliest; });
+}
+
+void Plant::archive(StateArchive& state) {
+  arm_.archive(state);
+  arbiter_.archive(state);
+  state(chain_hash_, missed_, missed_in_a_row_);
+  // Of the handovers that wait for their time, those of operators: the scenario's are in the scenario.
+  auto count = static_cast<std::uint32_t>(std::count_if(scheduled_.begin(), scheduled_.end(), isAsked));
+  state(count);
+  if (state.isRestoring()) {
+    for (; count > 0 && state.isGood(); --count) {
+      HandoverRequest request;
+      state(request.request_id, request.target, request.at_step, request.force);
+      scheduled_.push_back(request);
+    }
+  } else {
+    for (HandoverRequest& request : scheduled_) {
+      if (isAsked(request)) state(request.request_id, request.target, request.at_step, request.force);
+    }
+  }
 }
 
 void Plant::planSwaps() {
@@ -173,6 +224,7 @@ void Plant::memberFailed(int member, const char* reason) {
     master_.commandArrived(step);
   }
   if (was_outgoing) master_.needOutgoing(false);
+  if (reset_) resetAcknowledged(nameOf(member));
 }
 
 void Plant::keepTorque() {
@@ -181,9 +233,13 @@ void Plant::keepTorque() {
 }
 
 void Plant::proceed() {
-  if (isRealtime()) return considerSwap();
+  if (isRealtime()) {
+    considerSwap();
+    return prepareReset();
+  }
   for (;;) {
     considerSwap();
+    prepareReset();
     if (master_.hold() != Hold::kNone) return;
     constexpr std::int64_t kCatchUp_ns = 100'000'000;  // what a busy machine may cost; more is a stall
     const std::int64_t now_ns = steadyNow();
@@ -209,6 +265,8 @@ void Plant::tick() {
   // A timer that was armed anew may have been on its way already.
   if (due_ns && now_ns < *due_ns) return armTimer();
   considerSwap();
+  prepareReset();
+  if (reset_ && reset_->phase) return;  // whoever ends the reset arms the timer again
   const Hold missing = master_.inputsHold();
   if (missing == Hold::kNone) {
     missed_in_a_row_ = 0;
@@ -273,6 +331,14 @@ void Plant::finish() {
   ended_ns_ = steadyNow();
   arbiter_.runEnded();
   publishSwapActions();
+  refuseScheduled("the run has ended");
+  if (reset_) dropReset("the run has ended");
+  publishStatus();
+  service_.stepDone(master_.step());
+  service_.runEnded(master_.step(), true);
+}
+
+void Plant::refuseScheduled(const char* reason) {
   for (const HandoverRequest& request : scheduled_) {
     HandoverPlan plan;
     plan.request_id = request.request_id;
@@ -280,12 +346,9 @@ void Plant::finish() {
     plan.incoming = request.target;
     plan.decided_at_step = master_.step();
     plan.at_step = request.at_step;
-    publishRefusal(plan, "the run has ended");
+    publishRefusal(plan, reason);
   }
   scheduled_.clear();
-  publishStatus();
-  service_.stepDone(master_.step());
-  service_.runEnded(master_.step(), true);
 }
 
 void Plant::abort(const std::string& reason) {
@@ -322,6 +385,11 @@ void Plant::watchLateness() {
       warned_step_ = master_.step();
       service_.event(msg::SEVERITY_WARNING, "late", "the start waits for " + namesWaitedFor());
     }
+    return;
+  }
+  if (hold == Hold::kRewind) {
+    constexpr double kResetPatience_s = 10.0;
+    if (static_cast<double>(steadyNow() - progress_ns_) * 1e-9 > kResetPatience_s) giveUpReset();
     return;
   }
   const bool someone_is_late = hold == Hold::kContact || hold == Hold::kCommand || hold == Hold::kHandover ||

@@ -7,12 +7,14 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "control/arm.hpp"
+#include "runtime/checkpoint.hpp"
 #include "runtime/service.hpp"
 #include "step_timing.hpp"
 #include "time/baton_arbiter.hpp"
@@ -25,6 +27,9 @@ class Plant {
  public:
   explicit Plant(Service& service);
 
+  /// What a run needs of the plant to go on from a quiet step.
+  void archive(StateArchive& state);
+
  private:
   // What arrives, under the service's lock.
   void onContact(const msg::Contact& message, const dds::RawSample& sample);
@@ -32,6 +37,7 @@ class Plant {
   void onSimRequest(const msg::SimRequest& request);
   void onSwapRequest(const msg::SwapRequest& request);
   void onSwapAck(const msg::SwapAck& ack);
+  void onRewindAck(const msg::RewindAck& ack);
   void onServiceStatus(const msg::ServiceStatus& status, const dds::RawSample& sample);
 
   // The run.
@@ -42,9 +48,20 @@ class Plant {
   void endStep();     // move the arm over the open step and open the next
   void openStep();    // publish the state of the step that has just opened
   void finish();
+  // plant_rewind.cpp: back to the first step
+  void askForReset(std::uint64_t request_id);
+  void prepareReset();
+  void publishRewind(msg::RewindPhase phase);
+  void resetAcknowledged(const std::string& name);
+  void finishReset();
+  void giveUpReset();
+  void dropReset(const std::string& reason);
   void abort(const std::string& reason);
   void memberFailed(int member, const char* reason);
   void considerSwap();
+  void scheduleSwaps();
+  void refuseScheduled(const char* reason);
+  void resumeFromCheckpoint();
   void planSwaps();
   void publishSwapActions();
   void publishRefusal(const HandoverPlan& plan, const char* reason);
@@ -57,11 +74,13 @@ class Plant {
   [[nodiscard]] std::string namesWaitedFor() const;
   [[nodiscard]] int memberCalled(std::string_view name) const;
   [[nodiscard]] const std::string& nameOf(int member) const;
+  [[nodiscard]] std::string holderText() const;
   [[nodiscard]] bool isRealtime() const { return scenario_.mode == SimMode::kRealtime; }
   [[nodiscard]] static std::int64_t steadyNow();
 
   Service& service_;
   const Scenario& scenario_;
+  Checkpoints checkpoints_;
   Arm arm_;
   StepMaster master_;
   BatonArbiter arbiter_;
@@ -83,6 +102,15 @@ class Plant {
   std::vector<Speaker> speakers_;    // by member
   std::vector<Speaker> successors_;  // ready before their predecessor was known to have failed
 
+  /// A reset that has been asked for.
+  struct Reset {
+    std::uint64_t request_id = 0;
+    std::optional<msg::RewindPhase> phase;          // none: the open step is not complete yet
+    std::set<std::string, std::less<>> waited_for;  // services that have not acknowledged the phase
+  };
+  std::optional<Reset> reset_;
+  std::uint32_t take_ = 0;  // how often the run has been reset
+
   std::set<std::string, std::less<>> waited_for_;  // services not ready yet
   std::optional<HandoverPlan> completed_;          // took effect at the open step: its outcome follows the motion
   ReasonText completed_reason_{};
@@ -103,6 +131,7 @@ class Plant {
   dds::Writer<msg::PlantState>& state_out_;
   dds::Writer<msg::SimReply>& reply_out_;
   dds::Writer<msg::SimStatus>& status_out_;
+  dds::Writer<msg::Rewind>& rewind_out_;
   dds::Writer<msg::TimingStatus>& timing_out_;
   dds::Writer<msg::SwapPlan>& plan_out_;
   dds::Writer<msg::SwapOutcome>& outcome_out_;

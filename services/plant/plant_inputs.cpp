@@ -92,9 +92,15 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
   } else {
     switch (request.action()) {
       case msg::SIM_PAUSE:
-        master_.pause();
-        timing_.interrupted();
-        reply.accepted(true);
+        if (request.at_step() == 0) {
+          master_.pause();
+          timing_.interrupted();
+          reply.accepted(true);
+        } else if (master_.pauseAt(request.at_step())) {
+          reply.accepted(true);
+        } else {
+          refuse("expected a step after " + std::to_string(step) + " and before the end of the run");
+        }
         break;
       case msg::SIM_RESUME:
         master_.resume();
@@ -120,12 +126,25 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
           reply.accepted(true);
         }
         break;
-      case msg::SIM_STOP: reply.accepted(true); break;
+      case msg::SIM_RESET:
+        if (!reset_) return askForReset(request.request_id());  // which answers when it is done
+        refuse("a reset is under way");
+        break;
+      case msg::SIM_STOP:
+        if (request.at_step() == 0) {
+          reply.accepted(true);
+        } else if (master_.endAt(request.at_step())) {
+          arbiter_.endAt(request.at_step());
+          reply.accepted(true);
+        } else {
+          refuse("expected a step after " + std::to_string(step) + " and not after the end of the run");
+        }
+        break;
     }
   }
   reply.step(step);
   reply_out_.write(reply);
-  if (request.action() == msg::SIM_STOP && reply.accepted()) {
+  if (request.action() == msg::SIM_STOP && reply.accepted() && request.at_step() == 0) {
     end_reason_ = "stopped by request";
     master_.finish();
     return finish();
@@ -140,7 +159,7 @@ void Plant::onSwapRequest(const msg::SwapRequest& request) {
   const int member = memberCalled(request.target().c_str());
   const std::uint64_t earliest = master_.step() + scenario_.baton.margin_steps + 1;
   const bool can_wait = request.at_step() > earliest && scheduled_.size() < scheduled_.capacity() &&
-                        (scenario_.end_step == 0 || request.at_step() < scenario_.end_step);
+                        (master_.endStep() == 0 || request.at_step() < master_.endStep());
   if (member != kBrake && can_wait) {
     // Asked for again when its time has come: until then nothing else is blocked.
     scheduled_.push_back({request.request_id(), member, request.at_step(), request.force()});

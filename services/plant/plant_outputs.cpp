@@ -51,6 +51,7 @@ void Plant::publishRefusal(const HandoverPlan& plan, const char* reason) {
   msg::SwapOutcome outcome = outcomeOf(plan, reason);
   outcome.outgoing(nameOf(plan.outgoing));
   outcome.incoming(nameOf(plan.incoming));
+  outcome.take(take_);
   outcome_out_.write(outcome);
 }
 
@@ -63,6 +64,7 @@ void Plant::publishDone(const HandoverPlan& plan, const char* reason, const Join
   outcome.blend_steps(scenario_.baton.blend_steps);
   assignSequence(raw_step, outcome.raw_effort_step());
   assignSequence(applied_step, outcome.applied_effort_step());
+  outcome.take(take_);
   outcome_out_.write(outcome);
 }
 
@@ -85,7 +87,9 @@ void Plant::publishStatus() {
   status.step(master_.step());
   status.time_ns(service_.stampOf(master_.step()).time_ns);
   status.step_ns(scenario_.step_ns);
-  status.end_step(scenario_.end_step);
+  status.take(take_);
+  status.first_step(checkpoints_.firstStep());
+  status.end_step(master_.endStep());
   status.rate(pacer_.rate());
   const std::int64_t until = ended_ns_ != 0 ? ended_ns_ : steadyNow();
   status.elapsed_s(started_ns_ == 0 ? 0.0 : static_cast<double>(until - started_ns_) * 1e-9);

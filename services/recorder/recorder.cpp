@@ -11,6 +11,7 @@
 
 #include "msg/idl_text.hpp"
 #include "run_manifest.hpp"
+#include "runtime/paths.hpp"
 
 namespace baton {
 namespace {
@@ -50,7 +51,8 @@ Recorder::Recorder(Service& service)
       file_(service.options().out, fileOptions(service.scenario().recording)),
       queue_(kQueueBytes, 1024),
       ledger_(servicesBut(kRecorderName, service.scenario())),
-      status_out_(service.output(dds::topics::kRecorderStatus, {kPlantName})) {
+      status_out_(service.output(dds::topics::kRecorderStatus, {kPlantName})),
+      rewind_ack_out_(service.output(dds::topics::kRewindAck, {kPlantName})) {
   const Scenario& scenario = service.scenario();
   // Not the commands: while the brake holds there are none. A writer remembers more steps than the credit, so they are
   // safe.
@@ -60,6 +62,9 @@ Recorder::Recorder(Service& service)
   file_.addMetadata("baton.run", runManifest(service.options(), scenario));
   file_.addAttachment("scenario.yaml", "application/yaml", 0, 0, bytesOf(scenario.text));
   file_.addAttachment("robot.yaml", "application/yaml", 0, 0, bytesOf(scenario.robot_text));
+  if (const std::string& checkpoint = service.options().checkpoint; !checkpoint.empty()) {
+    file_.addAttachment("checkpoint.mcap", "application/octet-stream", 0, 0, bytesOf(readFile(checkpoint)));
+  }
   requireServices();
   service.answersNoSteps();
   service.onEnd([this] { has_run_ended_ = true; });
@@ -102,6 +107,7 @@ void Recorder::requireServices() {
         writers);
   };
   require(dds::topics::kPlantState, {kPlantName});
+  require(dds::topics::kRewind, {kPlantName});
   require(dds::topics::kSwapPlan, {kPlantName});
   require(dds::topics::kSwapOutcome, {kPlantName});
   require(dds::topics::kReference, {kTrajectoryName});
@@ -109,6 +115,9 @@ void Recorder::requireServices() {
   require(dds::topics::kJointCommand, controllers);
   require(dds::topics::kShadowCommand, controllers);
   require(dds::topics::kSwapAck, controllers);
+  std::vector<std::string> with_state = controllers;
+  with_state.emplace_back(kPlantName);
+  require(dds::topics::kCheckpoint, with_state);
   require(dds::topics::kEvent, servicesBut(kRecorderName, scenario));
   require(dds::topics::kServiceManifest, servicesBut(kRecorderName, scenario));
 }
@@ -203,12 +212,37 @@ void Recorder::writeBatch(const SampleQueue::Batch& batch) {
     } else if (topic.options.topic == dds::topics::kServiceManifest.name) {
       msg::ServiceManifest manifest;
       if (dds::decode(payload, manifest)) ledger_.addManifest(manifest);
+    } else if (topic.options.topic == dds::topics::kRewind.name) {
+      msg::Rewind rewind;
+      if (dds::decode(payload, rewind)) onRewind(rewind);
     } else if (topic.options.topic == dds::topics::kServiceStatus.name) {
       msg::ServiceStatus status;
       if (dds::decode(payload, status) && status.state() == msg::SERVICE_FAILED)
         ledger_.giveUpOn(status.name().c_str());
     }
   }
+}
+
+void Recorder::onRewind(const msg::Rewind& rewind) {
+  owed_.reset();
+  if (rewind.phase() == msg::REWIND_CANCEL) return;
+  if (rewind.phase() == msg::REWIND_COMMIT) {
+    take_ = rewind.take();
+    for (auto& [topic, step] : loop_steps_) step = 0;
+    published_ = 0;
+  }
+  owed_ = rewind;
+}
+
+/// The file has everything up to the open step, or has begun a new take: the plant waits to hear so.
+void Recorder::answerRewind() {
+  if (!owed_ || (owed_->phase() == msg::REWIND_PREPARE && acknowledged_ < owed_->at_step())) return;
+  msg::RewindAck ack;
+  ack.take(owed_->take());
+  ack.phase(owed_->phase());
+  ack.name(kRecorderName);
+  rewind_ack_out_.write(ack);
+  owed_.reset();
 }
 
 void Recorder::acknowledge(bool is_idle) {
@@ -221,12 +255,14 @@ void Recorder::acknowledge(bool is_idle) {
     published_ = acknowledged_;
     publishStatus(msg::RECORDER_RECORDING, "");
   }
+  answerRewind();
 }
 
 void Recorder::publishStatus(msg::RecorderState state, const std::string& text) {
   const mcap::WriterStatistics statistics = file_.statistics();
   msg::RecorderStatus status;
   status.state(state);
+  status.take(take_);
   status.acknowledged_step(acknowledged_);
   status.messages(statistics.written_messages);
   status.bytes(statistics.file_bytes);

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -46,6 +47,8 @@ class Recorder {
   void writeFile();
   void writeBatch(const SampleQueue::Batch& batch);
   void acknowledge(bool is_idle);
+  void onRewind(const msg::Rewind& rewind);
+  void answerRewind();
   mcap::ChannelId channelOf(const SampleQueue::Entry& entry, const Topic& topic);
   void finishFile();
   void publishStatus(msg::RecorderState state, const std::string& text);
@@ -56,6 +59,9 @@ class Recorder {
   SampleQueue queue_;
   Ledger ledger_;
   dds::Writer<msg::RecorderStatus>& status_out_;
+  dds::Writer<msg::RewindAck>& rewind_ack_out_;
+  std::optional<msg::Rewind> owed_;  // an answer to this
+  std::uint32_t take_ = 0;
 
   // Topics and writers, found by discovery: added on the executor, read by the file thread.
   mutable std::mutex topics_mutex_;

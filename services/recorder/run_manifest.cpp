@@ -28,6 +28,7 @@ mcap::StringMap runManifest(const ServiceOptions& options, const Scenario& scena
           {"cell", options.cell},
           {"run", options.run},
           {"domain", std::to_string(options.domain)},
+          {"checkpoint", options.checkpoint},
           {"step_ns", std::to_string(scenario.step_ns)},
           {"idl_hash", fmt::format("{:016x}", idl_hash)},
           {"host", host.data()}};

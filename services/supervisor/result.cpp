@@ -33,6 +33,7 @@ Json toJson(const msg::SwapOutcome& swap) {
 
 void writeResult(const RunInfo& info, const Scenario& scenario, const RunResult& result) {
   const double sim_time_s = static_cast<double>(result.sim.time_ns()) * 1e-9;
+  const double moved_s = static_cast<double>(result.sim.step() - result.sim.first_step()) * scenario.stepSeconds();
   Json json{{"run", info.run},
             {"cell", info.cell},
             {"domain", info.domain},
@@ -43,10 +44,11 @@ void writeResult(const RunInfo& info, const Scenario& scenario, const RunResult&
             {"exit_code", static_cast<int>(result.exit_code)},
             {"reason", result.reason},
             {"step_ns", scenario.step_ns},
+            {"first_step", result.sim.first_step()},
             {"steps", result.sim.step()},
             {"sim_time_s", sim_time_s},
             {"elapsed_s", result.sim.elapsed_s()},
-            {"real_time_ratio", result.sim.elapsed_s() > 0.0 ? sim_time_s / result.sim.elapsed_s() : 0.0},
+            {"real_time_ratio", result.sim.elapsed_s() > 0.0 ? moved_s / result.sim.elapsed_s() : 0.0},
             {"startup_s", result.startup_s},
             {"missed_steps", result.sim.missed_steps()},
             {"timing", toJson(result.timing)},

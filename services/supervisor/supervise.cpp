@@ -30,6 +30,12 @@ ExitCode supervise(int argc, char** argv) {
   app.add_flag("--no-recording", no_recording, "without a recorder");
   app.add_option("--restarts", deployment.restarts, "how often a controller that dies is started again, to stand by")
       ->check(CLI::Range(0, 1000));
+  std::string checkpoint;
+  bool starts_paused = false;
+  Scheduling scheduling;
+  addScheduling(app, scheduling);
+  app.add_option("--checkpoint", checkpoint, "checkpoint to go on from, instead of the scenario's start");
+  app.add_flag("--paused", starts_paused, "wait for `sim resume` before the first step");
   if (!parseCommandLine(app, argc, argv)) return ExitCode::kOk;
   if (info.run.empty()) info.run = newRunId();
   info.folder = runFolder(info.run).string();
@@ -56,6 +62,9 @@ ExitCode supervise(int argc, char** argv) {
   options.domain = info.domain;
   options.transport = info.transport;
   options.recording = scenario.recording.enabled;
+  options.checkpoint = checkpoint;
+  options.starts_paused = starts_paused;
+  options.scheduling = scheduling;
   Service service(options, std::move(scenario));
   held.release();
   Supervisor supervisor(service, deployment);

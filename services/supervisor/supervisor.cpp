@@ -53,6 +53,8 @@ Supervisor::Supervisor(Service& service, Deployment deployment)
 ExitCode Supervisor::run() {
   startAll();
   service_.run();  // what the handlers wrote is ours alone from here on
+  // A run that was reset is its last take.
+  std::erase_if(swaps_, [&](const msg::SwapOutcome& swap) { return swap.take() != sim_.take(); });
   const bool was_refused = std::any_of(swaps_.begin(), swaps_.end(), [&](const msg::SwapOutcome& swap) {
     return swap.request_id() == 0 && !swap.done() && swap.at_step() <= sim_.step();  // else the run ended before
   });
@@ -106,6 +108,7 @@ void Supervisor::start(const std::string& role, const std::string& name, const s
   options.name = name;
   options.law = law;
   options.out = deployment_.info.recording;
+  if (role == kRecorderName) options.scheduling = {};  // the loop must not wait for a file
   roles_[name] = role;
   if (!status_out_.contains(name)) status_out_[name] = &service_.output(dds::topics::kServiceStatus);
   restarts_left_.try_emplace(name, role == "controller" ? deployment_.restarts : 0);

@@ -9,12 +9,14 @@ ReferenceSource::ReferenceSource(Service& service)
   prepare(message_);
   service.input(dds::topics::kPlantState, {kPlantName},
                 [this](const msg::PlantState& message, const dds::RawSample&) { onState(message); });
+  service.onRewind([this](std::uint64_t step) { return answered_ && *answered_ >= step; },
+                   [this] { answered_.reset(); });
 }
 
 void ReferenceSource::onState(const msg::PlantState& message) {
   if (!service_.isReady() || service_.isOver()) return;
-  if (!started_) publish(message.step());
-  started_ = true;
+  if (!answered_) publish(message.step());
+  answered_ = message.step();
   publish(message.step() + 1);
   service_.at(message.step());
   service_.stepDone(message.step());

@@ -19,7 +19,7 @@ class ReferenceSource {
   ReferenceAnswer answer_;
   dds::Writer<msg::Reference>& reference_out_;
   msg::Reference message_;
-  bool started_ = false;
+  std::optional<std::uint64_t> answered_;  // the last state
 };
 
 }  // namespace baton

@@ -9,6 +9,7 @@
 
 #include "dds/typed.hpp"
 #include "mcap/reader.hpp"
+#include "support/live_run.hpp"
 #include "support/processes.hpp"
 #include "support/recordings.hpp"
 #include "support/short_contact.hpp"
@@ -26,38 +27,6 @@ std::string endless(const std::string& extra = "") {
   text.erase(text.find("swaps:"));  // the last key
   return text + extra;
 }
-
-struct LiveRun {
-  LiveRun(const Bench& bench_in, const std::string& scenario, const std::vector<std::string>& options = {})
-      : bench(bench_in) {
-    recording = (bench.folder() / "live.mcap").string();
-    std::vector<std::string> arguments{"up", bench.write("live.yaml", scenario), "--out", recording};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const Finished up = bench.baton(arguments);
-    EXPECT_EQ(up.exit_code, 0) << up.out << up.err;
-    status = bench.batonJson({"status", "--json"});
-  }
-  [[nodiscard]] int pidOf(const std::string& service) const {
-    for (const auto& one : status.at("services")) {
-      if (one.at("name") == service) return one.at("pid");
-    }
-    return -1;
-  }
-  void waitForStep(std::uint64_t step) const {
-    EXPECT_TRUE(eventually([&] { return bench.batonJson({"status", "--json"}).at("step") >= step; }));
-  }
-  [[nodiscard]] fs::path folder() const { return bench.folder() / "runs" / status.at("run").get<std::string>(); }
-  /// Waits for the run to be over and returns its result.
-  [[nodiscard]] nlohmann::json result() const {
-    EXPECT_TRUE(eventually([&] { return fs::exists(folder() / "result.json"); }));
-    EXPECT_TRUE(eventually([&] { return processesWith(bench.folder().string()).empty(); }));
-    return nlohmann::json::parse(std::ifstream(folder() / "result.json"));
-  }
-
-  const Bench& bench;
-  std::string recording;
-  nlohmann::json status;
-};
 
 class KilledService : public ::testing::TestWithParam<std::string> {};
 

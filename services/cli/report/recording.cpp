@@ -1,5 +1,10 @@
 #include "recording.hpp"
 
+#include <algorithm>
+
+#include "dds/codec.hpp"
+#include "dds/topics.hpp"
+
 namespace baton {
 
 std::optional<std::string> attachmentText(const mcap::Reader& reader, const std::string& name) {
@@ -21,6 +26,17 @@ std::string metadataValue(const mcap::Reader& reader, const std::string& record,
 
 bool isCertified(const mcap::Reader& reader) {
   return metadataValue(reader, "baton.certificate", "complete") == "true";
+}
+
+std::uint64_t lastTakeBegin(const mcap::Reader& reader) {
+  std::uint64_t begin = 0;
+  reader.forEachMessage({.topics = {dds::topics::kRewind.name}, .order = mcap::MessageFilter::Order::kFile},
+                        [&](const mcap::MessageView& view) {
+                          msg::Rewind rewind;
+                          const bool commits = dds::decode(view.data, rewind) && rewind.phase() == msg::REWIND_COMMIT;
+                          if (commits) begin = std::max(begin, view.log_time_ns);
+                        });
+  return begin;
 }
 
 }  // namespace baton

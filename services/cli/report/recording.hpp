@@ -17,4 +17,7 @@ namespace baton {
 /// Complete, by the recording's own certificate.
 [[nodiscard]] bool isCertified(const mcap::Reader& reader);
 
+/// Log time from which on everything belongs to the last take of a run that has been reset; 0 when it never was.
+[[nodiscard]] std::uint64_t lastTakeBegin(const mcap::Reader& reader);
+
 }  // namespace baton

@@ -20,11 +20,19 @@ std::string attachment(const mcap::Reader& reader, const std::string& name, cons
   throw UsageError(file.string() + ": expected the recording of a run, with its " + name + ", found none");
 }
 
-std::uint64_t countOf(const mcap::Reader& reader, const std::string& topic) {
-  std::uint64_t count = 0;
-  reader.forEachMessage({.topics = {topic}, .order = mcap::MessageFilter::Order::kFile},
-                        [&](const mcap::MessageView&) { ++count; });
-  return count;
+/// How many states there are, and the step of the first.
+std::pair<std::uint64_t, std::uint64_t> statesIn(const mcap::Reader& reader, std::uint64_t begin_ns) {
+  std::uint64_t count = 0, first = 0;
+  reader.forEachMessage({.topics = {dds::topics::kPlantState.name},
+                         .start_time_ns = begin_ns,
+                         .order = mcap::MessageFilter::Order::kFile},
+                        [&](const mcap::MessageView& view) {
+                          msg::PlantState state;
+                          if (!dds::decode(view.data, state)) return;
+                          first = count == 0 ? state.step() : std::min(first, state.step());
+                          ++count;
+                        });
+  return {count, first};
 }
 
 Eigen::Quaterniond toEigen(const msg::Quaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
@@ -107,7 +115,8 @@ class Filler {
  private:
   /// The column of a step; -1 for one that the file cannot have, or that comes after the last state.
   [[nodiscard]] Eigen::Index column(std::uint64_t step) const {
-    return step < static_cast<std::uint64_t>(trace_.q.cols()) ? static_cast<Eigen::Index>(step) : -1;
+    const std::uint64_t k = step - trace_.first_step;  // of an earlier step: a large number
+    return k < static_cast<std::uint64_t>(trace_.q.cols()) ? static_cast<Eigen::Index>(k) : -1;
   }
   template <class Numbers>
   static void fill(const Numbers& numbers, Eigen::MatrixXd& matrix, Eigen::Index k) {
@@ -122,13 +131,14 @@ class Filler {
 
 /// Reads the messages of these topics in one pass over the file.
 template <class... T>
-void read(const mcap::Reader& reader, Filler& filler, const dds::Topic<T>&... topics) {
+void read(const mcap::Reader& reader, std::uint64_t begin_ns, Filler& filler, const dds::Topic<T>&... topics) {
   const auto fill = [&]<class M>(const dds::Topic<M>& topic, const mcap::MessageView& view) {
     M message;
     if (view.channel->topic == topic.name && dds::decode(view.data, message)) filler(message);
   };
-  reader.forEachMessage({.topics = {topics.name...}, .order = mcap::MessageFilter::Order::kFile},
-                        [&](const mcap::MessageView& view) { (fill(topics, view), ...); });
+  reader.forEachMessage(
+      {.topics = {topics.name...}, .start_time_ns = begin_ns, .order = mcap::MessageFilter::Order::kFile},
+      [&](const mcap::MessageView& view) { (fill(topics, view), ...); });
 }
 
 }  // namespace
@@ -140,11 +150,13 @@ Trace readTrace(const std::filesystem::path& file) {
   trace.scenario = parseScenario(file.string() + "#scenario.yaml", attachment(reader, "scenario.yaml", file),
                                  file.string() + "#robot.yaml", robot_text);
   trace.is_complete = isCertified(reader);
-  const std::uint64_t steps = countOf(reader, dds::topics::kPlantState.name);
+  const std::uint64_t begin_ns = lastTakeBegin(reader);
+  const auto [steps, first_step] = statesIn(reader, begin_ns);
+  trace.first_step = first_step;
   if (steps == 0) throw UsageError(file.string() + ": expected states of a plant, found none");
   Filler filler(trace, static_cast<Eigen::Index>(steps));
-  read(reader, filler, dds::topics::kPlantState);  // first: whose command counts is what the states say
-  read(reader, filler, dds::topics::kReference, dds::topics::kContact, dds::topics::kJointCommand,
+  read(reader, begin_ns, filler, dds::topics::kPlantState);  // first: whose command counts is what the states say
+  read(reader, begin_ns, filler, dds::topics::kReference, dds::topics::kContact, dds::topics::kJointCommand,
        dds::topics::kSwapOutcome, dds::topics::kSimStatus);
   filler.finish();
   return trace;

@@ -7,12 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "messages/loop.hpp"
 #include "msg/swap.h"
 #include "runtime/scenario.hpp"
 
 namespace baton {
 
-/// Column k of every matrix is step k; what was not recorded is NaN.
+/// Column k of every matrix is step first_step + k; what was not recorded is NaN.
 struct Trace {
   Scenario scenario;        // as the file has it
   Eigen::MatrixXd q;        // joint positions, n x steps [rad or m]
@@ -22,13 +23,14 @@ struct Trace {
   Eigen::MatrixXd q_d;      // desired, n x steps; all NaN when the motion is given in task space alone
   Eigen::MatrixXd qd_d;
   Eigen::MatrixXd qdd_d;
-  Eigen::MatrixXd p_WE;         // tip position, 3 x steps [m]
-  Eigen::MatrixXd p_WE_d;       // desired
-  Eigen::MatrixXd orientation;  // rotation vector from the tip's orientation to the desired one, 3 x steps [rad]
-  Eigen::MatrixXd zyz;          // tip orientation as ZYZ angles, as the report plots them, 3 x steps [rad]
-  Eigen::MatrixXd zyz_d;        // desired
-  Eigen::MatrixXd h_e;          // wrench the tip exerts on the environment, 6 x steps; zero where none was recorded
-  Eigen::MatrixXd h_d;          // desired wrench, 6 x steps
+  Eigen::MatrixXd p_WE;          // tip position, 3 x steps [m]
+  Eigen::MatrixXd p_WE_d;        // desired
+  Eigen::MatrixXd orientation;   // rotation vector from the tip's orientation to the desired one, 3 x steps [rad]
+  Eigen::MatrixXd zyz;           // tip orientation as ZYZ angles, as the report plots them, 3 x steps [rad]
+  Eigen::MatrixXd zyz_d;         // desired
+  Eigen::MatrixXd h_e;           // wrench the tip exerts on the environment, 6 x steps; zero where none was recorded
+  Eigen::MatrixXd h_d;           // desired wrench, 6 x steps
+  std::uint64_t first_step = 0;  // 0 unless the run is a branch
   std::vector<std::string> holders;
   std::vector<std::uint64_t> chain;     // hash of all payloads of the loop up to the step before
   std::vector<msg::SwapOutcome> swaps;  // those that took place, in order
@@ -36,8 +38,10 @@ struct Trace {
   bool is_complete = false;  // by the recording's own certificate
 
   [[nodiscard]] Eigen::Index steps() const { return q.cols(); }
-  /// To the bit what services make of a step's time_ns.
-  [[nodiscard]] double time(Eigen::Index step) const { return static_cast<double>(step * scenario.step_ns) * 1e-9; }
+  /// Of a column [s], to the bit what services make of its step's time_ns.
+  [[nodiscard]] double time(Eigen::Index k) const {
+    return static_cast<double>(stampOf(first_step + static_cast<std::uint64_t>(k), scenario.step_ns).time_ns) * 1e-9;
+  }
   [[nodiscard]] Eigen::Index last() const { return steps() - 1; }
 };
 

@@ -61,11 +61,11 @@ template <class T>
 class CodecTest : public testing::Test {};
 
 using AllTypes =
-    testing::Types<msg::Quaternion, msg::PlantState, msg::Contact, msg::Reference, msg::JointCommand, msg::SimRequest,
-                   msg::SimReply, msg::SimStatus, msg::TimeSpread, msg::StepSpread, msg::TimingStatus, msg::SwapRequest,
-                   msg::SwapPlan, msg::SwapAck, msg::SwapOutcome, msg::ControllerStatus, msg::Parameter,
-                   msg::ParameterStatus, msg::ServiceStatus, msg::Event, msg::StreamManifest, msg::ServiceManifest,
-                   msg::RecorderStatus, msg::ReplayStatus>;
+    testing::Types<msg::Quaternion, msg::PlantState, msg::Contact, msg::Reference, msg::JointCommand, msg::Checkpoint,
+                   msg::SimRequest, msg::SimReply, msg::SimStatus, msg::TimeSpread, msg::StepSpread, msg::TimingStatus,
+                   msg::Rewind, msg::RewindAck, msg::SwapRequest, msg::SwapPlan, msg::SwapAck, msg::SwapOutcome,
+                   msg::ControllerStatus, msg::Parameter, msg::ParameterStatus, msg::ServiceStatus, msg::Event,
+                   msg::StreamManifest, msg::ServiceManifest, msg::RecorderStatus, msg::ReplayStatus>;
 TYPED_TEST_SUITE(CodecTest, AllTypes);
 
 template <class... Types>
@@ -115,6 +115,14 @@ TYPED_TEST(CodecTest, PayloadsAreFilledUpWithZerosToAMultipleOfFour) {
                             [](std::byte b) { return b == std::byte{0}; }));
     const Bytes header{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};  // CDR, little-endian, no options
     EXPECT_TRUE(std::equal(header.begin(), header.end(), payload.begin()));
+  }
+}
+
+TYPED_TEST(CodecTest, EqualMessagesAreEqualBytesWhateverTheBufferHeldBefore) {
+  for (const auto& message : {test::full<TypeParam>(), TypeParam{}}) {
+    Bytes buffer(maxPayload<TypeParam>(), std::byte{0xFF});
+    const std::span<const std::byte> payload = encode(message, std::span(buffer));
+    EXPECT_EQ(Bytes(payload.begin(), payload.end()), encoded(message));
   }
 }
 

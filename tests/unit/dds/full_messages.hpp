@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "msg/checkpoint.h"
 #include "msg/loop.h"
 #include "msg/parameter.h"
 #include "msg/record.h"
@@ -41,6 +42,7 @@ inline void fill(msg::PlantState& m) {
   m.tip_velocity(kThree);
   m.tip_angular_velocity(kThree);
   m.holder(fullName());
+  m.checkpoint(true);
   m.chain_hash(kId);
 }
 
@@ -79,11 +81,19 @@ inline void fill(msg::JointCommand& m) {
   m.inputs_hash(kId);
 }
 
+inline void fill(msg::Checkpoint& m) {
+  m.step(kId);
+  m.time_ns(kTime);
+  m.name(fullName());
+  m.state().resize(msg::MAX_CHECKPOINT, 0xC5);
+}
+
 inline void fill(msg::SimRequest& m) {
   m.request_id(kId);
   m.action(msg::SIM_STOP);
   m.steps(kId);
   m.rate(0.1);
+  m.at_step(kId);
 }
 
 inline void fill(msg::SimReply& m) {
@@ -93,12 +103,26 @@ inline void fill(msg::SimReply& m) {
   m.reason(std::string(200, 'r'));
 }
 
+inline void fill(msg::Rewind& m) {
+  m.take(0xFFFF'FFFF);
+  m.phase(msg::REWIND_CANCEL);
+  m.at_step(kId);
+}
+
+inline void fill(msg::RewindAck& m) {
+  m.take(0xFFFF'FFFF);
+  m.phase(msg::REWIND_COMMIT);
+  m.name(fullName());
+}
+
 inline void fill(msg::SimStatus& m) {
   m.state(msg::SIM_STATE_ABORTED);
   m.mode(msg::SIM_MODE_REALTIME);
   m.step(kId);
   m.time_ns(kTime);
   m.step_ns(kTime);
+  m.take(7);
+  m.first_step(kId);
   m.end_step(kId);
   m.rate(0.1);
   m.elapsed_s(1e9);
@@ -162,6 +186,7 @@ inline void fill(msg::SwapAck& m) {
 
 inline void fill(msg::SwapOutcome& m) {
   m.request_id(kId);
+  m.take(7);
   m.plan_id(kId);
   m.done(true);
   m.outgoing(fullName());
@@ -237,6 +262,7 @@ inline void fill(msg::ServiceManifest& m) {
 
 inline void fill(msg::RecorderStatus& m) {
   m.state(msg::RECORDER_FAILED);
+  m.take(7);
   m.acknowledged_step(kId);
   m.messages(kId);
   m.bytes(kId);

@@ -94,10 +94,10 @@ std::vector<Row> topicTable() {
   std::vector<Row> rows;
   const auto list = [&](const auto&... topics) { (rows.push_back({topics.name, topics.type}), ...); };
   list(topics::kPlantState, topics::kContact, topics::kReference, topics::kJointCommand, topics::kShadowCommand,
-       topics::kSimRequest, topics::kSimReply, topics::kSimStatus, topics::kTimingStatus, topics::kSwapRequest,
-       topics::kSwapPlan, topics::kSwapAck, topics::kSwapOutcome, topics::kControllerStatus, topics::kParameterStatus,
-       topics::kServiceStatus, topics::kServiceManifest, topics::kEvent, topics::kRecorderStatus,
-       topics::kReplayStatus);
+       topics::kCheckpoint, topics::kSimRequest, topics::kSimReply, topics::kSimStatus, topics::kTimingStatus,
+       topics::kRewind, topics::kRewindAck, topics::kSwapRequest, topics::kSwapPlan, topics::kSwapAck,
+       topics::kSwapOutcome, topics::kControllerStatus, topics::kParameterStatus, topics::kServiceStatus,
+       topics::kServiceManifest, topics::kEvent, topics::kRecorderStatus, topics::kReplayStatus);
   return rows;
 }
 

@@ -202,6 +202,55 @@ TEST(StepMaster, ResumeAndPauseCancelTheStepsThatAreLeft) {
   for (int i = 0; i < 50; ++i) ASSERT_EQ(liveOneStep(master), Hold::kNone);
 }
 
+TEST(StepMaster, PausesAndEndsAtTheStepAskedFor) {
+  StepMaster master({.end_step = 100});
+  master.start();
+  EXPECT_FALSE(master.pauseAt(0)) << "the open step";
+  EXPECT_FALSE(master.pauseAt(100)) << "the end comes first";
+  EXPECT_TRUE(master.pauseAt(7));
+  while (liveOneStep(master) == Hold::kNone) ASSERT_LE(master.step(), 7u);
+  EXPECT_EQ(master.step(), 7u);
+  EXPECT_EQ(master.phase(), SimPhase::kPaused);
+  EXPECT_TRUE(master.pauseAt(9)) << "asked for while paused, it holds after the next resume";
+  master.resume();
+  while (liveOneStep(master) == Hold::kNone) ASSERT_LE(master.step(), 9u);
+  EXPECT_EQ(master.step(), 9u);
+  EXPECT_FALSE(master.endAt(9));
+  EXPECT_FALSE(master.endAt(101)) << "a run gets shorter, not longer";
+  EXPECT_TRUE(master.endAt(12));
+  master.resume();
+  while (liveOneStep(master) == Hold::kNone) ASSERT_LE(master.step(), 12u);
+  EXPECT_EQ(master.step(), 12u);
+  EXPECT_EQ(master.phase(), SimPhase::kFinished);
+}
+
+TEST(StepMaster, BeginsWhereACheckpointIsWithCreditFromThere) {
+  StepMaster master({.first_step = 5000, .end_step = 5002, .credit = 16});
+  master.start();
+  EXPECT_EQ(master.step(), 5000u);
+  EXPECT_EQ(liveOneStep(master), Hold::kNone);
+  EXPECT_EQ(liveOneStep(master), Hold::kNone);
+  EXPECT_EQ(master.phase(), SimPhase::kFinished);
+}
+
+TEST(StepMaster, HoldsForARewindAndThenIsAtTheFirstStepAgain) {
+  for (const bool paused : {false, true}) {
+    StepMaster master({.end_step = 100, .credit = 16});
+    master.start();
+    for (int i = 0; i < 5; ++i) liveOneStep(master);
+    if (paused) master.pause();
+    master.holdForRewind(true);
+    EXPECT_EQ(liveOneStep(master), Hold::kRewind);
+    EXPECT_EQ(master.step(), 5u);
+    master.rewind();
+    EXPECT_EQ(master.step(), 0u);
+    EXPECT_FALSE(master.hasCommand());
+    EXPECT_EQ(master.phase(), paused ? SimPhase::kPaused : SimPhase::kRunning);
+    master.resume();
+    EXPECT_EQ(liveOneStep(master), Hold::kNone);
+  }
+}
+
 TEST(StepMaster, TheOperatorCannotRunWhatHasNotStarted) {
   StepMaster master({});
   master.pause();

@@ -1,0 +1,85 @@
+#include "runtime/scenario_edit.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <sstream>
+
+#include "base/error.hpp"
+
+namespace baton {
+namespace {
+
+std::vector<std::string> partsOf(const std::string& path) {
+  std::vector<std::string> parts;
+  std::istringstream stream(path);
+  for (std::string part; std::getline(stream, part, '.');) {
+    if (part.empty()) throw UsageError("--set " + path + ": expected names and places between dots");
+    parts.push_back(part);
+  }
+  if (parts.empty()) throw UsageError("--set: expected a path before '='");
+  return parts;
+}
+
+/// The entry of a list at a place, or of a name.
+YAML::Node entryOf(const YAML::Node& list, const std::string& part, const std::string& path) {
+  std::string known;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const YAML::Node entry = list[i];
+    const YAML::Node name = entry.IsMap() ? entry["name"] : YAML::Node(YAML::NodeType::Undefined);
+    const bool has_name = name.IsDefined() && name.IsScalar();
+    if (part == std::to_string(i) || (has_name && name.Scalar() == part)) return entry;
+    known += (known.empty() ? "" : ", ") + (has_name ? name.Scalar() : std::to_string(i));
+  }
+  throw UsageError("--set " + path + ": expected one of " + known + ", found '" + part + "'");
+}
+
+void set(YAML::Node node, const std::vector<std::string>& parts, std::size_t at, const YAML::Node& value,
+         const std::string& path) {
+  const std::string& part = parts[at];
+  const bool is_last = at + 1 == parts.size();
+  if (node.IsSequence()) {
+    YAML::Node entry = entryOf(node, part, path);
+    if (is_last) {
+      entry = value;  // yaml-cpp: assigns to the entry in the list
+    } else {
+      set(entry, parts, at + 1, value, path);
+    }
+    return;
+  }
+  if (!node.IsMap()) throw UsageError("--set " + path + ": nothing can stand below '" + parts[at - 1] + "', a value");
+  if (is_last) {
+    node[part] = value;
+    return;
+  }
+  if (!node[part].IsDefined() || node[part].IsNull()) node[part] = YAML::Node(YAML::NodeType::Map);
+  set(node[part], parts, at + 1, value, path);
+}
+
+}  // namespace
+
+ScenarioSetting parseSetting(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+    throw UsageError("--set: expected path=value, such as controllers.impedance.parameters.kp=300, found " + text);
+  }
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+std::string editScenario(const std::string& text, const std::vector<ScenarioSetting>& settings) {
+  YAML::Node root = YAML::Load(text);
+  for (const auto& [path, value] : settings) {
+    YAML::Node parsed;
+    try {
+      parsed = YAML::Load(value);
+    } catch (const YAML::Exception&) {
+      throw UsageError("--set " + path + ": expected a value in YAML, found " + value);
+    }
+    set(root, partsOf(path), 0, parsed, path);
+  }
+  YAML::Emitter emitter;
+  emitter.SetDoublePrecision(17);
+  emitter << root;
+  return std::string(emitter.c_str()) + "\n";
+}
+
+}  // namespace baton

@@ -1,0 +1,22 @@
+/// Changes to the text of a scenario, by path: "controllers.impedance.parameters.kp",
+/// "environment.walls.0.damping_N_s_per_m". A part of a path is a key, or in a list the entry's place (from 0) or its
+/// `name`. What comes out is checked like any scenario when it is read.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace baton {
+
+/// Path and value, the value as YAML text: "300", "[1, 2, 3]", "{at_s: 1, to: force}".
+using ScenarioSetting = std::pair<std::string, std::string>;
+
+/// Splits "path=value". Throws UsageError when it is not of that form.
+[[nodiscard]] ScenarioSetting parseSetting(const std::string& text);
+
+/// Keys that are missing in a map are added. Comments are lost. Throws UsageError for a path that leads nowhere and for
+/// text that is not YAML.
+[[nodiscard]] std::string editScenario(const std::string& text, const std::vector<ScenarioSetting>& settings);
+
+}  // namespace baton

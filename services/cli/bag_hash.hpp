@@ -1,0 +1,41 @@
+/// `baton bag hash`: the hash of a run, computed again from the recorded payloads of its loop, and compared.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "dds/hash.hpp"
+
+namespace baton {
+
+/// A recorded loop, as hashes; of a run that was reset, its last take.
+struct HashedRun {
+  struct Step {
+    dds::StepHashes hashes;   // of what was recorded for the step; 0 for what was not
+    std::uint64_t chain = 0;  // PlantState.chain_hash: of the steps before
+    std::string holder;
+  };
+  std::map<std::uint64_t, Step> steps;  // those with a PlantState
+
+  /// What the last state says: of everything before it.
+  [[nodiscard]] std::uint64_t hash() const;
+  /// The first step whose recorded payloads do not give the hash that the next state carries; nothing when all do. A
+  /// step may have done without a payload that came too late for it (realtime, or a holder that failed).
+  [[nodiscard]] std::optional<std::uint64_t> firstBroken() const;
+};
+
+/// Throws UsageError when the file has no states, and what reading a recording throws.
+[[nodiscard]] HashedRun hashRun(const std::filesystem::path& file);
+
+/// Where two runs part.
+struct Parting {
+  std::uint64_t step = 0;
+  std::string topic;  // "plant_state", "contact", "joint_command"; or what only one of them has
+};
+/// Nothing when all steps that both have are the same.
+[[nodiscard]] std::optional<Parting> firstDifference(const HashedRun& a, const HashedRun& b);
+
+}  // namespace baton

@@ -1,0 +1,237 @@
+#include "branch_command.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "mcap/reader.hpp"
+#include "report/recording.hpp"
+#include "run_commands.hpp"
+#include "run_session.hpp"
+#include "runtime/build_id.hpp"
+#include "runtime/checkpoint.hpp"
+#include "runtime/command_line.hpp"
+#include "runtime/json.hpp"
+#include "runtime/paths.hpp"
+#include "runtime/scenario_edit.hpp"
+#include "runtime/service_options.hpp"
+
+namespace baton {
+namespace {
+namespace fs = std::filesystem;
+
+struct BranchRequest {
+  std::string recording;
+  std::optional<std::uint64_t> at_step;
+  std::optional<double> at_s;
+  std::string swap;
+  std::vector<std::string> set;
+  RunRequest run;
+  bool json = false;
+};
+
+/// The experiment that a recording holds.
+struct Original {
+  fs::path file;
+  std::string scenario_text;
+  std::string robot_text;
+  Scenario scenario;
+  msg::PlantState state;  // at the step of the branch
+  std::uint64_t last_step = 0;
+};
+
+std::string needed(const mcap::Reader& reader, const std::string& name, const fs::path& file) {
+  if (auto text = attachmentText(reader, name)) return *text;
+  throw UsageError(file.string() + ": expected the recording of a run, with its " + name + ", found none");
+}
+
+std::uint64_t stepOf(const BranchRequest& request, const Scenario& scenario) {
+  if (request.at_step) return *request.at_step;
+  if (!request.at_s) throw UsageError("branch: expected --at STEP or --at-time SECONDS");
+  return static_cast<std::uint64_t>(std::llround(*request.at_s / scenario.stepSeconds()));
+}
+
+Original read(const BranchRequest& request) {
+  const mcap::Reader reader(request.recording);
+  Original original{.file = request.recording,
+                    .scenario_text = needed(reader, "scenario.yaml", request.recording),
+                    .robot_text = needed(reader, "robot.yaml", request.recording),
+                    .scenario = {},
+                    .state = {},
+                    .last_step = 0};
+  original.scenario = parseScenario(request.recording + "#scenario.yaml", original.scenario_text,
+                                    request.recording + "#robot.yaml", original.robot_text);
+  const std::uint64_t step = stepOf(request, original.scenario);
+  bool found = false;
+  reader.forEachMessage({.topics = {dds::topics::kPlantState.name}, .order = mcap::MessageFilter::Order::kFile},
+                        [&](const mcap::MessageView& view) {
+                          msg::PlantState state;
+                          if (!dds::decode(view.data, state)) return;
+                          original.last_step = std::max(original.last_step, state.step());
+                          if (state.step() != step) return;
+                          original.state = state;
+                          found = true;
+                        });
+  if (!found || step >= original.last_step) {
+    throw UsageError(request.recording + ": expected a step before its last, " + std::to_string(original.last_step) +
+                     ", found " + std::to_string(step));
+  }
+  return original;
+}
+
+std::string seconds(std::uint64_t step, const Scenario& scenario) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.9f", static_cast<double>(step) * scenario.stepSeconds());
+  return text.data();
+}
+
+/// The planned handovers, but for those that `keep` refuses, as YAML.
+template <class Keep>
+std::string swapsText(const Scenario& scenario, const Keep& keep, const std::string& more = "") {
+  std::string text = more;
+  for (const PlannedSwap& swap : scenario.swaps) {
+    if (keep(swap.at_step))
+      text += (text.empty() ? "" : ", ") + ("{at_s: " + seconds(swap.at_step, scenario)) + ", to: " + swap.to + "}";
+  }
+  return "[" + text + "]";
+}
+
+void writeText(const fs::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream)
+    throw UnavailableError("cannot write " + file.string() + ": expected space and the right to write there");
+}
+
+/// Runs what is in `folder` from `set` on, and throws when it does not end well.
+nlohmann::ordered_json runFrom(const CheckpointSet& set, const fs::path& folder, const std::string& scenario_text,
+                               const Original& original, RunRequest request, ExitCode& exit_code) {
+  writeText(folder / "robot.yaml", original.robot_text);
+  writeText(folder / "scenario.yaml", editScenario(scenario_text, {{"robot", "./robot.yaml"}}));
+  if (!set.states.empty()) {
+    const fs::path checkpoint = folder / ("checkpoint-" + std::to_string(set.step) + ".mcap");
+    fs::remove(checkpoint);
+    writeCheckpoint(checkpoint, set, original.scenario.step_ns);
+    request.checkpoint = checkpoint.string();
+  }
+  request.scenario = (folder / "scenario.yaml").string();
+  RunSession session(request, true);
+  exit_code = runToTheEnd(session);
+  return session.result();
+}
+
+/// The checkpoint of exactly that step. When the recording has only an earlier one, the run is repeated from there.
+CheckpointSet checkpointAt(std::uint64_t step, const Original& original, const fs::path& folder,
+                           const RunRequest& request) {
+  std::vector<std::string> services = controllerNames(original.scenario);
+  services.emplace_back(kPlantName);
+  const mcap::Reader reader(original.file);
+  const bool is_ours = metadataValue(reader, "baton.run", "build_id") == buildId();
+  const CheckpointSet newest = is_ours ? newestCheckpoint(original.file, step, services) : CheckpointSet{};
+  if (newest.step == step) return newest;
+
+  std::fprintf(stderr, "repeating steps %llu to %llu\n", static_cast<unsigned long long>(newest.step),
+               static_cast<unsigned long long>(step));
+  RunRequest lead_in = request;
+  lead_in.out = (folder / "lead_in.mcap").string();
+  lead_in.overwrite = true;
+  ExitCode code = ExitCode::kOk;
+  const nlohmann::ordered_json result =
+      runFrom(newest, folder,
+              editScenario(original.scenario_text,
+                           {{"duration_s", seconds(step, original.scenario)},
+                            {"swaps", swapsText(original.scenario, [&](std::uint64_t at) { return at < step; })}}),
+              original, lead_in, code);
+  if (code != ExitCode::kOk) {
+    throw Error(code, "the steps before the branch could not be repeated: " + result.at("reason").get<std::string>());
+  }
+  if (result.at("chain_hash") != std::to_string(original.state.chain_hash())) {
+    throw Error(ExitCode::kFailed,
+                "steps " + std::to_string(newest.step) + " to " + std::to_string(step) +
+                    " do not repeat: what happened between them (an operator's request, a failover, another build) is "
+                    "not in the scenario; choose step " +
+                    std::to_string(newest.step) + " or one nearer behind a checkpoint");
+  }
+  const CheckpointSet made = newestCheckpoint(lead_in.out, step, services);
+  if (made.step != step) {
+    throw UsageError("step " + std::to_string(step) + " lies in a handover: choose one before or after it");
+  }
+  return made;
+}
+
+void expectNoPlan(std::uint64_t step, const Scenario& scenario) {
+  const std::uint64_t margin = scenario.baton.margin_steps;
+  for (const PlannedSwap& swap : scenario.swaps) {
+    if (step >= swap.at_step - margin - 1 && step < swap.at_step + 1 && step + margin + 1 != swap.at_step) {
+      throw UsageError("step " + std::to_string(step) + " lies in the handover to " + swap.to + " at step " +
+                       std::to_string(swap.at_step) + ": choose one up to " +
+                       std::to_string(swap.at_step - margin - 1) + " or from " + std::to_string(swap.at_step + 1));
+    }
+  }
+}
+
+void branch(const BranchRequest& request, ExitCode& exit_code) {
+  const Original original = read(request);
+  const std::uint64_t step = original.state.step();
+  const Scenario& scenario = original.scenario;
+  expectNoPlan(step, scenario);
+  const fs::path folder = stateFolder() / "branches" / newRunId();
+  fs::create_directories(folder);
+  const CheckpointSet set = checkpointAt(step, original, folder, request.run);
+
+  const std::uint64_t earliest = step + scenario.baton.margin_steps + 1;
+  std::vector<ScenarioSetting> settings;
+  std::string wanted;
+  if (!request.swap.empty()) {
+    (void)scenario.controller(request.swap);
+    wanted = "{at_s: " + seconds(earliest, scenario) + ", to: " + request.swap + "}";
+  }
+  settings.emplace_back("swaps", swapsText(
+                                     scenario, [&](std::uint64_t at) { return at >= earliest; }, wanted));
+  if (original.state.holder().size() > 0) settings.emplace_back("active", original.state.holder().c_str());
+  for (const std::string& text : request.set) settings.push_back(parseSetting(text));
+  RunRequest run = request.run;
+  if (run.out.empty()) {
+    run.out = (folder / (scenario.name + ".mcap")).string();
+  }
+  nlohmann::ordered_json result =
+      runFrom(set, folder, editScenario(original.scenario_text, settings), original, run, exit_code);
+  result["branch_of"] = fs::absolute(original.file).string();
+  result["branch_step"] = step;
+  if (request.json) {
+    std::cout << toText(result) << '\n';
+  } else {
+    printResult(result);
+  }
+}
+
+}  // namespace
+
+void addBranchCommand(CLI::App& app, ExitCode& exit_code) {
+  const auto request = std::make_shared<BranchRequest>();
+  CLI::App* command =
+      app.add_subcommand("branch", "go on from a step of a recorded run, with another controller or other values");
+  command->footer(
+      "Starts from the checkpoints in the recording; steps between the last one and STEP are repeated first, and have\n"
+      "to come out the same. Without a change the branch gives the bytes of the original run.\n"
+      "  baton branch run.mcap --at 4000 --swap force\n"
+      "  baton branch run.mcap --at-time 2 --set controllers.impedance.parameters.kp=300 --set duration_s=6");
+  command->add_option("recording", request->recording, "recording of a run (MCAP)")->required();
+  auto* at = command->add_option("--at", request->at_step, "step to go on from");
+  command->add_option("--at-time", request->at_s, "the same in seconds of the run")->excludes(at);
+  command->add_option("--swap", request->swap, "hand over to this controller, as soon as the margin allows");
+  command->add_option("--set", request->set, "path=value in the scenario, from that step on")->allow_extra_args(false);
+  command->add_option("--out", request->run.out, "file to record to (default: in a folder of the branch's own)");
+  command->add_flag("--overwrite", request->run.overwrite, "replace the file --out names");
+  addCellOptions(*command, request->run.cell, request->run.domain);
+  addTransport(*command, request->run.transport);
+  command->add_flag("--json", request->json, "print the result as JSON");
+  command->callback([=, &exit_code] { branch(*request, exit_code); });
+}
+
+}  // namespace baton

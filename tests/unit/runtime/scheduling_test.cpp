@@ -1,0 +1,53 @@
+// What the kernel is asked for, and what is said when it refuses.
+#include "runtime/scheduling.hpp"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+
+#include <thread>
+
+#include "base/error.hpp"
+
+namespace baton {
+namespace {
+
+TEST(Scheduling, ReadsCoresAndRefusesWhatIsNone) {
+  EXPECT_EQ(parseCpus("0"), std::vector<int>{0});
+  for (const char* bad : {"", "x", "-1", "0;1", "100000", "0,,0", " 0"}) {
+    EXPECT_THROW((void)parseCpus(bad), UsageError) << bad;
+  }
+}
+
+TEST(Scheduling, StaysOnTheCoresAskedFor) {
+  std::thread([] {  // this thread alone, not the test's
+    EXPECT_TRUE(applyScheduling({.cpus = "0"}).empty());
+    cpu_set_t set;
+    ASSERT_EQ(sched_getaffinity(0, sizeof set, &set), 0);
+    EXPECT_EQ(CPU_COUNT(&set), 1);
+    EXPECT_TRUE(CPU_ISSET(0, &set));
+  })
+      .join();
+}
+
+TEST(Scheduling, GetsThePriorityOrSaysWhyNot) {
+  std::thread([] {
+    const std::vector<std::string> refusals = applyScheduling({.fifo_priority = 10, .cpus = {}});
+    if (refusals.empty()) {
+      EXPECT_EQ(sched_getscheduler(0), SCHED_FIFO);
+    } else {
+      ASSERT_EQ(refusals.size(), 1U);
+      EXPECT_NE(refusals.front().find("CAP_SYS_NICE"), std::string::npos) << refusals.front();
+      EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER);
+    }
+  }).join();
+}
+
+TEST(Scheduling, AsksForNothingWhenNothingIsWanted) {
+  EXPECT_TRUE(applyScheduling({}).empty());
+  EXPECT_TRUE(toArguments(Scheduling{}).empty());
+  EXPECT_EQ(toArguments(Scheduling{.fifo_priority = 50, .cpus = "0"}),
+            (std::vector<std::string>{"--fifo", "50", "--cpus", "0"}));
+}
+
+}  // namespace
+}  // namespace baton
