@@ -30,6 +30,9 @@ class StateArchive {
     (visit(members), ...);
   }
 
+  /// What was restored cannot be.
+  void fail() noexcept { is_good_ = false; }
+
   [[nodiscard]] bool isRestoring() const noexcept { return to_ == nullptr; }
   /// Everything fitted; when restoring, ask isWhole() in the end.
   [[nodiscard]] bool isGood() const noexcept { return is_good_; }

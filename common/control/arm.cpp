@@ -56,7 +56,10 @@ void Arm::archive(StateArchive& state) noexcept {
   Vector6 before = h_e_before_.value_or(Vector6::Zero());
   state(state_.q, state_.qd, state_.tau_applied, has_before, before);
   blend_.archive(state);
-  if (!state.isRestoring() || !state.isGood() || state_.q.size() != model_.size()) return;
+  if (!state.isRestoring() || !state.isGood()) return;
+  for (const JointVector* one : {&state_.q, &state_.qd, &state_.tau_applied}) {
+    if (one->size() != model_.size() || !one->allFinite()) return state.fail();
+  }
   h_e_before_.reset();
   if (has_before) h_e_before_ = before;
   updateTip();

@@ -40,8 +40,8 @@ inline constexpr Topic<msg::Checkpoint>       kCheckpoint      {"checkpoint",   
 inline constexpr Topic<msg::SimRequest>       kSimRequest      {"sim_request",       "baton::msg::SimRequest",       Profile::kRequest};
 inline constexpr Topic<msg::SimReply>         kSimReply        {"sim_reply",         "baton::msg::SimReply",         Profile::kRequest};
 inline constexpr Topic<msg::SimStatus>        kSimStatus       {"sim_status",        "baton::msg::SimStatus",        Profile::kStatus};
-inline constexpr Topic<msg::Rewind>           kRewind          {"rewind",            "baton::msg::Rewind",           Profile::kEvent};
-inline constexpr Topic<msg::RewindAck>        kRewindAck       {"rewind_ack",        "baton::msg::RewindAck",        Profile::kEvent};
+inline constexpr Topic<msg::Rewind>           kRewind          {"rewind",            "baton::msg::Rewind",           Profile::kLoop};
+inline constexpr Topic<msg::RewindAck>        kRewindAck       {"rewind_ack",        "baton::msg::RewindAck",        Profile::kLoop};
 inline constexpr Topic<msg::TimingStatus>     kTimingStatus    {"timing_status",     "baton::msg::TimingStatus",     Profile::kStatus};
 inline constexpr Topic<msg::SwapRequest>      kSwapRequest     {"swap_request",      "baton::msg::SwapRequest",      Profile::kRequest};
 inline constexpr Topic<msg::SwapPlan>         kSwapPlan        {"swap_plan",         "baton::msg::SwapPlan",         Profile::kEvent};

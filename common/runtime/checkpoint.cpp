@@ -1,6 +1,7 @@
 #include "runtime/checkpoint.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "mcap/reader.hpp"
 #include "mcap/writer.hpp"
@@ -12,9 +13,9 @@ namespace {
 constexpr const char* kTopic = dds::topics::kCheckpoint.name;
 
 template <class F>
-void forEachCheckpoint(const mcap::Reader& reader, const F& f) {
+void forEachCheckpoint(const mcap::Reader& reader, std::uint64_t begin_ns, const F& f) {
   msg::Checkpoint message;
-  reader.forEachMessage({.topics = {kTopic}, .order = mcap::MessageFilter::Order::kFile},
+  reader.forEachMessage({.topics = {kTopic}, .start_time_ns = begin_ns, .order = mcap::MessageFilter::Order::kFile},
                         [&](const mcap::MessageView& view) {
                           if (dds::decode(view.data, message)) f(message);
                         });
@@ -22,22 +23,22 @@ void forEachCheckpoint(const mcap::Reader& reader, const F& f) {
 
 }  // namespace
 
-CheckpointSet newestCheckpoint(const std::filesystem::path& recording, std::uint64_t at_step,
+CheckpointSet newestCheckpoint(const std::filesystem::path& recording, std::uint64_t begin_ns, std::uint64_t at_step,
                                const std::vector<std::string>& services) {
   const mcap::Reader reader(recording);
-  std::map<std::uint64_t, std::size_t> parts;  // of those services, by step
+  std::map<std::uint64_t, std::set<std::string>> parts;  // whose, by step
   const auto counts = [&](const msg::Checkpoint& one) {
     return one.step() <= at_step && std::find(services.begin(), services.end(), one.name().c_str()) != services.end();
   };
-  forEachCheckpoint(reader, [&](const msg::Checkpoint& one) {
-    if (counts(one)) ++parts[one.step()];
+  forEachCheckpoint(reader, begin_ns, [&](const msg::Checkpoint& one) {
+    if (counts(one)) parts[one.step()].insert(one.name().c_str());
   });
-  const auto newest =
-      std::find_if(parts.rbegin(), parts.rend(), [&](const auto& entry) { return entry.second == services.size(); });
+  const auto newest = std::find_if(parts.rbegin(), parts.rend(),
+                                   [&](const auto& entry) { return entry.second.size() == services.size(); });
   CheckpointSet set;
   if (newest == parts.rend()) return set;
   set.step = newest->first;
-  forEachCheckpoint(reader, [&](const msg::Checkpoint& one) {
+  forEachCheckpoint(reader, begin_ns, [&](const msg::Checkpoint& one) {
     if (one.step() == set.step && counts(one)) set.states[one.name().c_str()] = one.state();
   });
   return set;
@@ -67,7 +68,7 @@ void writeCheckpoint(const std::filesystem::path& file, const CheckpointSet& set
 CheckpointSet readCheckpoint(const std::filesystem::path& file) {
   const mcap::Reader reader(file);
   CheckpointSet set;
-  forEachCheckpoint(reader, [&](const msg::Checkpoint& one) {
+  forEachCheckpoint(reader, 0, [&](const msg::Checkpoint& one) {
     if (!set.states.empty() && one.step() != set.step) {
       throw UsageError(file.string() + ": expected the checkpoints of one step, found those of steps " +
                        std::to_string(set.step) + " and " + std::to_string(one.step()));

@@ -39,9 +39,10 @@ struct BatonConfig {
 
 struct RecordingConfig {
   bool enabled = true;
-  std::string compression = "zstd";    // none, lz4, zstd
-  std::uint64_t credit_steps = 256;    // lockstep: how far the plant may run past the recorder
-  std::uint64_t checkpoint_steps = 0;  // every so many steps all parts save their state, for branches; 0: never
+  std::string compression = "zstd";  // none, lz4, zstd
+  std::uint64_t credit_steps = 256;  // lockstep: how far the plant may run past the recorder
+  std::uint64_t checkpoint_steps =
+      0;  // every so many steps all parts save their state, for branches; 0: at the end alone
 };
 
 struct Scenario {
@@ -76,8 +77,8 @@ struct Scenario {
   [[nodiscard]] double stepSeconds() const { return static_cast<double>(step_ns) * 1e-9; }
   /// Whether all parts save their state at the start of this step: now and then, and at the end.
   [[nodiscard]] bool hasCheckpointAt(std::uint64_t step) const {
-    if (recording.checkpoint_steps == 0 || step == 0) return false;
-    return step % recording.checkpoint_steps == 0 || step == end_step;
+    if (step == 0 || step == end_step) return step != 0;
+    return recording.checkpoint_steps > 0 && step % recording.checkpoint_steps == 0;
   }
   [[nodiscard]] bool hasEnvironment() const { return !walls.empty(); }
   /// The arm at the start of the run.

@@ -222,6 +222,10 @@ bool BatonArbiter::isQuiet(std::uint64_t step) const noexcept {
 void BatonArbiter::archive(StateArchive& state) noexcept {
   state(last_plan_id_, holder_, contact_);
   for (char& failed : failed_) state(failed);
+  if (holder_ < kBrake || holder_ >= static_cast<int>(failed_.size())) {
+    holder_ = kBrake;
+    state.fail();
+  }
 }
 
 void BatonArbiter::prepareRewind() noexcept {

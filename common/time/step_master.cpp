@@ -33,7 +33,7 @@ void StepMaster::start() noexcept {
 
 void StepMaster::pause() noexcept {
   if (phase_ == SimPhase::kRunning) phase_ = SimPhase::kPaused;
-  pause_step_ = 0;
+  step_until_ = 0;
 }
 
 bool StepMaster::pauseAt(std::uint64_t step) noexcept {
@@ -49,18 +49,15 @@ bool StepMaster::endAt(std::uint64_t step) noexcept {
 }
 
 void StepMaster::resume() noexcept {
-  if (phase_ == SimPhase::kPaused) {
-    phase_ = SimPhase::kRunning;  // to a later pause, if one was asked for meanwhile
-  } else {
-    pause_step_ = 0;
-  }
+  if (phase_ == SimPhase::kPaused) phase_ = SimPhase::kRunning;
+  step_until_ = 0;
 }
 
 void StepMaster::stepBy(std::uint64_t steps) noexcept {
   if (isOver() || phase_ == SimPhase::kStarting || steps == 0) return;
   // Steps asked for while others are still being run come on top of those.
-  const bool is_stepping = phase_ == SimPhase::kRunning && pause_step_ > step_;
-  pause_step_ = (is_stepping ? pause_step_ : step_) + steps;
+  const bool is_stepping = phase_ == SimPhase::kRunning && step_until_ > step_;
+  step_until_ = (is_stepping ? step_until_ : step_) + steps;
   phase_ = SimPhase::kRunning;
 }
 
@@ -76,7 +73,7 @@ void StepMaster::rewind() noexcept {
   is_rewinding_ = false;
   if (isOver() || phase_ == SimPhase::kStarting) return;
   step_ = acknowledged_ = config_.first_step;
-  pause_step_ = 0;
+  pause_step_ = step_until_ = 0;
   awaits_swap_ = false;
   openStep();
 }
@@ -127,8 +124,10 @@ void StepMaster::advance() noexcept {
   openStep();
   if (config_.end_step > 0 && step_ >= config_.end_step) {
     phase_ = SimPhase::kFinished;
-  } else if (step_ == pause_step_) {
+  } else if (step_ == pause_step_ || step_ == step_until_) {
     phase_ = SimPhase::kPaused;
+    if (step_ == pause_step_) pause_step_ = 0;
+    step_until_ = 0;
   }
 }
 

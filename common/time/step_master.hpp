@@ -81,7 +81,8 @@ class StepMaster {
   StepMasterConfig config_;
   SimPhase phase_ = SimPhase::kStarting;
   std::uint64_t step_ = 0;
-  std::uint64_t pause_step_ = 0;  // 0: none
+  std::uint64_t pause_step_ = 0;  // asked for with pauseAt(); 0: none
+  std::uint64_t step_until_ = 0;  // of a stepBy(); 0: none
   std::uint64_t acknowledged_ = 0;
   bool has_contact_ = false;
   bool has_command_ = false;

@@ -254,16 +254,24 @@ ExitCode hash(const BagRequest& request) {
                                : "the recorded payloads give it, step by step";
   bool is_good = !broken;
   if (!request.other.empty()) {
-    const std::optional<Parting> parting = firstDifference(run, hashRun(request.other));
-    json["same_as"] = {{"file", request.other}, {"same", !parting}};
+    const HashedRun other = hashRun(request.other);
+    const Comparison comparison = compare(run, other);
+    const std::optional<Parting>& parting = comparison.parting;
+    const bool is_same = !parting && comparison.steps > 0 && !other.firstBroken();
+    json["same_as"] = {{"file", request.other}, {"same", is_same}, {"steps_compared", comparison.steps}};
     if (parting) {
       json["same_as"]["first_different_step"] = parting->step;
       json["same_as"]["topic"] = parting->topic;
+      verdict += "\ndiffers from " + request.other + " first at step " + std::to_string(parting->step) + " in " +
+                 parting->topic;
+    } else {
+      verdict += "\n" +
+                 (comparison.steps == 0 ? "no step in common with " + request.other
+                                        : "the same as " + request.other + " in the " +
+                                              std::to_string(comparison.steps) + " steps that both have") +
+                 (other.firstBroken() ? ", whose payloads do not give its own hash" : "");
     }
-    verdict += parting ? "\ndiffers from " + request.other + " first at step " + std::to_string(parting->step) +
-                             " in " + parting->topic
-                       : "\nthe same as " + request.other + " wherever both have a step";
-    is_good = is_good && !parting;
+    is_good = is_good && is_same;
   }
   if (request.json) {
     std::puts(toText(json).c_str());

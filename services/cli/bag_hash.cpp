@@ -66,18 +66,23 @@ HashedRun hashRun(const std::filesystem::path& file) {
   return run;
 }
 
-std::optional<Parting> firstDifference(const HashedRun& a, const HashedRun& b) {
+Comparison compare(const HashedRun& a, const HashedRun& b) {
+  Comparison comparison;
   for (const auto& [number, one] : a.steps) {
     const auto found = b.steps.find(number);
     if (found == b.steps.end()) continue;
-    const HashedRun::Step& other = found->second;
-    if (one.hashes.state != other.hashes.state) return Parting{number, dds::topics::kPlantState.name};
-    if (one.hashes.contact != other.hashes.contact) return Parting{number, dds::topics::kContact.name};
-    if (one.hashes.outgoing_command != other.hashes.outgoing_command || one.hashes.command != other.hashes.command) {
-      return Parting{number, dds::topics::kJointCommand.name};
-    }
+    ++comparison.steps;
+    const dds::StepHashes &x = one.hashes, &y = found->second.hashes;
+    const bool commands_differ = x.outgoing_command != y.outgoing_command || x.command != y.command;
+    const char* topic = x.state != y.state       ? dds::topics::kPlantState.name
+                        : x.contact != y.contact ? dds::topics::kContact.name
+                        : commands_differ        ? dds::topics::kJointCommand.name
+                                                 : nullptr;
+    if (topic == nullptr) continue;
+    comparison.parting = Parting{number, topic};
+    break;
   }
-  return std::nullopt;
+  return comparison;
 }
 
 }  // namespace baton

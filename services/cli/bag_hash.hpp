@@ -33,9 +33,12 @@ struct HashedRun {
 /// Where two runs part.
 struct Parting {
   std::uint64_t step = 0;
-  std::string topic;  // "plant_state", "contact", "joint_command"; or what only one of them has
+  std::string topic;  // "plant_state", "contact" or "joint_command"
 };
-/// Nothing when all steps that both have are the same.
-[[nodiscard]] std::optional<Parting> firstDifference(const HashedRun& a, const HashedRun& b);
+struct Comparison {
+  std::uint64_t steps = 0;         // that both have
+  std::optional<Parting> parting;  // the first that differs
+};
+[[nodiscard]] Comparison compare(const HashedRun& a, const HashedRun& b);
 
 }  // namespace baton

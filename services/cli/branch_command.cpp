@@ -42,6 +42,7 @@ struct Original {
   Scenario scenario;
   msg::PlantState state;  // at the step of the branch
   std::uint64_t last_step = 0;
+  std::uint64_t begin_ns = 0;  // log time of the last take's begin
 };
 
 std::string needed(const mcap::Reader& reader, const std::string& name, const fs::path& file) {
@@ -62,12 +63,15 @@ Original read(const BranchRequest& request) {
                     .robot_text = needed(reader, "robot.yaml", request.recording),
                     .scenario = {},
                     .state = {},
-                    .last_step = 0};
+                    .last_step = 0,
+                    .begin_ns = lastTakeBegin(reader)};
   original.scenario = parseScenario(request.recording + "#scenario.yaml", original.scenario_text,
                                     request.recording + "#robot.yaml", original.robot_text);
   const std::uint64_t step = stepOf(request, original.scenario);
   bool found = false;
-  reader.forEachMessage({.topics = {dds::topics::kPlantState.name}, .order = mcap::MessageFilter::Order::kFile},
+  reader.forEachMessage({.topics = {dds::topics::kPlantState.name},
+                         .start_time_ns = original.begin_ns,
+                         .order = mcap::MessageFilter::Order::kFile},
                         [&](const mcap::MessageView& view) {
                           msg::PlantState state;
                           if (!dds::decode(view.data, state)) return;
@@ -132,7 +136,8 @@ CheckpointSet checkpointAt(std::uint64_t step, const Original& original, const f
   services.emplace_back(kPlantName);
   const mcap::Reader reader(original.file);
   const bool is_ours = metadataValue(reader, "baton.run", "build_id") == buildId();
-  const CheckpointSet newest = is_ours ? newestCheckpoint(original.file, step, services) : CheckpointSet{};
+  const CheckpointSet newest =
+      is_ours ? newestCheckpoint(original.file, original.begin_ns, step, services) : CheckpointSet{};
   if (newest.step == step) return newest;
 
   std::fprintf(stderr, "repeating steps %llu to %llu\n", static_cast<unsigned long long>(newest.step),
@@ -157,7 +162,7 @@ CheckpointSet checkpointAt(std::uint64_t step, const Original& original, const f
                     "not in the scenario; choose step " +
                     std::to_string(newest.step) + " or one nearer behind a checkpoint");
   }
-  const CheckpointSet made = newestCheckpoint(lead_in.out, step, services);
+  const CheckpointSet made = newestCheckpoint(lead_in.out, 0, step, services);
   if (made.step != step) {
     throw UsageError("step " + std::to_string(step) + " lies in a handover: choose one before or after it");
   }
@@ -180,10 +185,6 @@ void branch(const BranchRequest& request, ExitCode& exit_code) {
   const std::uint64_t step = original.state.step();
   const Scenario& scenario = original.scenario;
   expectNoPlan(step, scenario);
-  const fs::path folder = stateFolder() / "branches" / newRunId();
-  fs::create_directories(folder);
-  const CheckpointSet set = checkpointAt(step, original, folder, request.run);
-
   const std::uint64_t earliest = step + scenario.baton.margin_steps + 1;
   std::vector<ScenarioSetting> settings;
   std::string wanted;
@@ -194,13 +195,29 @@ void branch(const BranchRequest& request, ExitCode& exit_code) {
   settings.emplace_back("swaps", swapsText(
                                      scenario, [&](std::uint64_t at) { return at >= earliest; }, wanted));
   if (original.state.holder().size() > 0) settings.emplace_back("active", original.state.holder().c_str());
-  for (const std::string& text : request.set) settings.push_back(parseSetting(text));
+  for (const std::string& text : request.set) {
+    settings.push_back(parseSetting(text));
+    const std::string& path = settings.back().first;
+    if (path == "step_s" || path == "robot" || path == "active") {
+      throw UsageError("--set " + path + ": a branch goes on with the step, the robot and the holder of the run" +
+                       (path == "active" ? "; --swap hands over" : ""));
+    }
+  }
+  const std::string text = editScenario(original.scenario_text, settings);
+  const Scenario changed = parseScenario("the branch's scenario", text, "its robot", original.robot_text);
+  if (changed.end_step != 0 && changed.end_step <= step) {
+    throw UsageError("--set duration_s: expected an end after the step of the branch, " + seconds(step, scenario) +
+                     " s, found " + seconds(changed.end_step, scenario) + " s");
+  }
+  const fs::path folder = stateFolder() / "branches" / newRunId();
+  fs::create_directories(folder);
+  const CheckpointSet set = checkpointAt(step, original, folder, request.run);
+
   RunRequest run = request.run;
   if (run.out.empty()) {
     run.out = (folder / (scenario.name + ".mcap")).string();
   }
-  nlohmann::ordered_json result =
-      runFrom(set, folder, editScenario(original.scenario_text, settings), original, run, exit_code);
+  nlohmann::ordered_json result = runFrom(set, folder, text, original, run, exit_code);
   result["branch_of"] = fs::absolute(original.file).string();
   result["branch_step"] = step;
   if (request.json) {
@@ -219,7 +236,7 @@ void addBranchCommand(CLI::App& app, ExitCode& exit_code) {
   command->footer(
       "Starts from the checkpoints in the recording; steps between the last one and STEP are repeated first, and have\n"
       "to come out the same. Without a change the branch gives the bytes of the original run.\n"
-      "  baton branch run.mcap --at 4000 --swap force\n"
+      "  baton branch run.mcap --at 4000 --swap tracking\n"
       "  baton branch run.mcap --at-time 2 --set controllers.impedance.parameters.kp=300 --set duration_s=6");
   command->add_option("recording", request->recording, "recording of a run (MCAP)")->required();
   auto* at = command->add_option("--at", request->at_step, "step to go on from");

@@ -231,7 +231,7 @@ void addRunCommands(CLI::App& app, ExitCode& exit_code) {
   CLI::Option* in_process_option = run_command->add_flag(
       "--in-process", *in_process,
       "all parts in this process, without DDS and recording, as fast as possible: the same bytes, the same hash");
-  for (const char* other : {"--out", "--overwrite", "--no-recording", "--restarts"}) {
+  for (const char* other : {"--out", "--overwrite", "--no-recording", "--restarts", "--fifo", "--cpus"}) {
     in_process_option->excludes(other);
   }
   run_command->callback([=, &exit_code] {

@@ -82,7 +82,8 @@ Plant::Plant(Service& service)
   if (scenario_.recording.enabled) {
     service.input(dds::topics::kRecorderStatus, {kRecorderName},
                   [this](const msg::RecorderStatus& status, const dds::RawSample&) {
-                    if (status.take() != take_) return;
+                    has_recorder_failed_ = status.state() == msg::RECORDER_FAILED;
+                    if (status.take() != take_ && !has_recorder_failed_) return;
                     master_.recorderAcknowledged(status.acknowledged_step());
                     proceed();
                   });
@@ -149,7 +150,7 @@ void Plant::openStep() {
   hashes_ = {};
   master_.needOutgoing(arbiter_.outgoingAt(step) != kBrake);
   toMessage(service_.stampOf(step), arm_.state(), nameOf(arbiter_.holder()), chain_hash_, state_message_);
-  const bool has_checkpoint = scenario_.hasCheckpointAt(step) && arbiter_.isQuiet(step);
+  const bool has_checkpoint = scenario_.hasCheckpointAt(step) && arbiter_.isQuiet(step) && !completed_;
   if (has_checkpoint) checkpoints_.save(step, *this);
   state_message_.checkpoint(has_checkpoint);
   state_out_.write(state_message_);
@@ -387,11 +388,11 @@ void Plant::watchLateness() {
     }
     return;
   }
-  if (hold == Hold::kRewind) {
+  if (reset_) {
     constexpr double kResetPatience_s = 10.0;
-    if (static_cast<double>(steadyNow() - progress_ns_) * 1e-9 > kResetPatience_s) giveUpReset();
-    return;
+    if (static_cast<double>(steadyNow() - reset_->asked_ns) * 1e-9 > kResetPatience_s) return giveUpReset();
   }
+  if (hold == Hold::kRewind) return;
   const bool someone_is_late = hold == Hold::kContact || hold == Hold::kCommand || hold == Hold::kHandover ||
                                hold == Hold::kSwap || hold == Hold::kRecorder;
   if (!someone_is_late) {

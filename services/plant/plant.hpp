@@ -105,11 +105,14 @@ class Plant {
   /// A reset that has been asked for.
   struct Reset {
     std::uint64_t request_id = 0;
+    std::int64_t asked_ns = 0;
     std::optional<msg::RewindPhase> phase;          // none: the open step is not complete yet
     std::set<std::string, std::less<>> waited_for;  // services that have not acknowledged the phase
   };
   std::optional<Reset> reset_;
-  std::uint32_t take_ = 0;  // how often the run has been reset
+  std::uint32_t take_ = 0;       // of the run; larger behind each reset
+  std::uint32_t next_take_ = 1;  // of the next attempt at a reset
+  bool has_recorder_failed_ = false;
 
   std::set<std::string, std::less<>> waited_for_;  // services not ready yet
   std::optional<HandoverPlan> completed_;          // took effect at the open step: its outcome follows the motion

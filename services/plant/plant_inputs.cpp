@@ -127,8 +127,13 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
         }
         break;
       case msg::SIM_RESET:
-        if (!reset_) return askForReset(request.request_id());  // which answers when it is done
-        refuse("a reset is under way");
+        if (checkpoints_.firstStep() > 0) {
+          refuse("a branch begins in the middle of a run: end it and branch again");
+        } else if (reset_) {
+          refuse("a reset is under way");
+        } else {
+          return askForReset(request.request_id());  // which answers when it is done
+        }
         break;
       case msg::SIM_STOP:
         if (request.at_step() == 0) {

@@ -8,7 +8,7 @@
 namespace baton {
 
 void Plant::askForReset(std::uint64_t request_id) {
-  reset_ = Reset{.request_id = request_id, .phase = {}, .waited_for = {}};
+  reset_ = Reset{.request_id = request_id, .asked_ns = steadyNow(), .phase = {}, .waited_for = {}};
   master_.holdForRewind(true);
   arbiter_.prepareRewind();
   publishSwapActions();
@@ -25,10 +25,11 @@ void Plant::publishRewind(msg::RewindPhase phase) {
   reset_->phase = phase;
   for (const std::string& name : servicesBut(kPlantName, scenario_)) {
     const int member = memberCalled(name);
-    if (member == kBrake || !arbiter_.hasFailed(member)) reset_->waited_for.insert(name);
+    const bool is_gone = member == kBrake ? name == kRecorderName && has_recorder_failed_ : arbiter_.hasFailed(member);
+    if (!is_gone) reset_->waited_for.insert(name);
   }
   msg::Rewind message;
-  message.take(take_ + 1);
+  message.take(next_take_);
   message.phase(phase);
   message.at_step(master_.step());
   rewind_out_.write(message);
@@ -36,7 +37,7 @@ void Plant::publishRewind(msg::RewindPhase phase) {
 }
 
 void Plant::onRewindAck(const msg::RewindAck& ack) {
-  if (!reset_ || ack.take() != take_ + 1 || ack.phase() != reset_->phase) return;
+  if (!reset_ || ack.take() != next_take_ || ack.phase() != reset_->phase) return;
   resetAcknowledged(ack.name().c_str());
 }
 
@@ -66,7 +67,7 @@ void Plant::finishReset() {
   arm_.reset();
   arbiter_.prepareRewind();  // what has been asked for meanwhile
   publishSwapActions();
-  ++take_;
+  take_ = next_take_++;
   scheduleSwaps();
   arbiter_.rewind();
   master_.rewind();
@@ -77,7 +78,7 @@ void Plant::finishReset() {
   chain_hash_ = 0;
   missed_ = missed_in_a_row_ = 0;
   warned_step_ = kNever;
-  timing_.interrupted();
+  timing_ = {};
   started_ns_ = steadyNow();
   pacer_.anchor(master_.step(), started_ns_);
   arbiter_.open(master_.step());
@@ -100,7 +101,11 @@ void Plant::dropReset(const std::string& reason) {
   reply.step(master_.step());
   reply.reason(reason.substr(0, 199));
   reply_out_.write(reply);
-  if (reset_->phase) publishRewind(msg::REWIND_CANCEL);
+  if (reset_->phase) {
+    publishRewind(msg::REWIND_CANCEL);
+    ++next_take_;  // what is still on its way belongs to the attempt before
+  }
+  timing_.interrupted();
   reset_.reset();
   master_.holdForRewind(false);
 }

@@ -21,6 +21,18 @@ std::string undisturbedHash(const Bench& bench) {
   return result.at("chain_hash");
 }
 
+/// A variable that what is started meanwhile inherits.
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
+  ~Environment() { unsetenv(name_); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  const char* name_;
+};
+
 class StoppedService : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(StoppedService, ForTwoSecondsLeavesEveryByteAsItWas) {
@@ -54,9 +66,14 @@ INSTANTIATE_TEST_SUITE_P(Each, StoppedService,
 TEST(Straggler, LostDatagramsChangeNoByteAndLeaveNoGap) {
   const Bench bench;
   const std::string expected = undisturbedHash(bench);
-  ASSERT_EQ(setenv("BATON_LOSE_ONE_IN", "50", 1), 0);
-  const nlohmann::json result = bench.batonJson({"run", bench.write("lossy.yaml", shortContact()), "--json"});
-  ASSERT_EQ(unsetenv("BATON_LOSE_ONE_IN"), 0);
+  const std::string scenario = bench.write("lossy.yaml", shortContact());
+  {
+    const Environment unreadable("BATON_LOSE_ONE_IN", "all");
+    const Finished refused = bench.baton({"run", scenario});
+    EXPECT_EQ(refused.exit_code, 2) << "the variable is read: " << refused.err;
+  }
+  const Environment lossy("BATON_LOSE_ONE_IN", "50");
+  const nlohmann::json result = bench.batonJson({"run", scenario, "--json"});
   EXPECT_EQ(result.at("state"), "finished") << result;
   EXPECT_EQ(result.at("chain_hash"), expected);
   EXPECT_TRUE(result.at("recording").at("complete")) << result;
@@ -130,6 +147,25 @@ TEST(Reset, GoesBackToTheFirstStepAndRepeatsTheRun) {
   EXPECT_EQ(hash.at("hash"), expected);
   EXPECT_TRUE(hash.at("payloads_agree"));
   EXPECT_EQ(bench.batonJson({"metrics", run.recording, "--json"}).at("steps"), kShortSteps);
+}
+
+TEST(Reset, WhileTheRunGoesOn) {
+  for (const char* mode : {"rate: max\n", "mode: realtime\n"}) {
+    const Bench bench;
+    std::string text = shortContact();
+    const std::string duration = "duration_s: 0.5\n";
+    text.replace(text.find(duration), duration.size(), mode);
+    text.erase(text.find("swaps:"));
+    const LiveRun run(bench, text);
+    run.waitForStep(100);
+    const nlohmann::json reset = bench.batonJson({"sim", "reset", "--json"});
+    EXPECT_TRUE(reset.at("accepted")) << reset;
+    EXPECT_EQ(bench.batonJson({"status", "--json"}).at("state"), "running");
+    run.waitForStep(100);
+    const nlohmann::json result = bench.batonJson({"down", "--json"});
+    EXPECT_TRUE(result.at("recording").at("complete")) << result;
+    EXPECT_EQ(bench.baton({"bag", "hash", run.recording}).exit_code, 0);
+  }
 }
 
 TEST(Requests, PauseAndStopAtTheStepAskedFor) {

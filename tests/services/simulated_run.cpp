@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "arm.hpp"
+#include "control/arm.hpp"
 #include "control/law.hpp"
 #include "environment/plane.hpp"
 #include "robot/kinematics.hpp"
@@ -62,7 +62,7 @@ Scenario reportScenario(const std::string& name, const std::vector<TextChange>& 
 
 Trace simulate(const Scenario& scenario) {
   Trace trace = emptyTrace(scenario);
-  Arm arm(trace.scenario);
+  Arm arm(trace.scenario.robot, trace.scenario.armConfig());
   const Trajectory trajectory(scenario.robot, scenario.trajectory);
   const ControllerConfig& holder = scenario.controller(scenario.active);
   const auto law = makeLaw(holder.law, scenario.robot, holder.parameters);

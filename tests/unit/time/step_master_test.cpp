@@ -224,6 +224,22 @@ TEST(StepMaster, PausesAndEndsAtTheStepAskedFor) {
   EXPECT_EQ(master.phase(), SimPhase::kFinished);
 }
 
+TEST(StepMaster, AStepAndALaterPauseDoNotDisturbEachOther) {
+  StepMaster master({});
+  master.start();
+  EXPECT_TRUE(master.pauseAt(20));
+  master.stepBy(5);
+  while (liveOneStep(master) == Hold::kNone) ASSERT_LE(master.step(), 5u);
+  EXPECT_EQ(master.step(), 5u);
+  master.stepBy(3);
+  EXPECT_TRUE(master.pauseAt(30)) << "the later word holds, and the steps go on";
+  while (liveOneStep(master) == Hold::kNone) ASSERT_LE(master.step(), 8u);
+  EXPECT_EQ(master.step(), 8u);
+  master.resume();
+  while (liveOneStep(master) == Hold::kNone) ASSERT_LE(master.step(), 30u);
+  EXPECT_EQ(master.step(), 30u);
+}
+
 TEST(StepMaster, BeginsWhereACheckpointIsWithCreditFromThere) {
   StepMaster master({.first_step = 5000, .end_step = 5002, .credit = 16});
   master.start();
