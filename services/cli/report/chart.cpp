@@ -38,7 +38,7 @@ std::string commandsFor(const std::string& title, const Chart& chart) {
   std::ostringstream commands;
   commands << fmt::format("set multiplot layout 1,{} title {} noenhanced\n", chart.panels.size(), quoted(title));
   commands << "set grid lc rgb '#dddddd'\nset key outside bottom center horizontal samplen 2\n"
-              "set autoscale noextend\nset offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n";
+              "set bmargin 6.5\nset autoscale noextend\nset offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n";
   for (std::size_t p = 0; p < chart.panels.size(); ++p) {
     const ChartPanel& panel = chart.panels[p];
     commands << fmt::format("set title {} noenhanced\nset xlabel {}\nset ylabel {}\n", quoted(panel.title),
@@ -63,7 +63,7 @@ std::string commandsFor(const std::string& title, const Chart& chart) {
 }  // namespace
 
 void draw(const std::filesystem::path& stem, const std::string& title, const Chart& chart) {
-  drawScript(stem, {120 + 370 * chart.panels.size(), 440}, dataOf(chart), commandsFor(title, chart));
+  drawScript(stem, {120 + 370 * chart.panels.size(), 460}, dataOf(chart), commandsFor(title, chart));
 }
 
 }  // namespace baton
