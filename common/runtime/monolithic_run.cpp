@@ -34,9 +34,9 @@ MonolithicRun::MonolithicRun(const Scenario& scenario)
                         dds::maxPayload<msg::Contact>(), dds::maxPayload<msg::JointCommand>()})) {
   if (scenario_.hasEnvironment()) contact_answer_.emplace(scenario_);
   input_.dt_s = scenario_.stepSeconds();
-  prepare(state_);
-  prepare(reference_);
-  prepare(command_);
+  prepare(state_message_);
+  prepare(reference_message_);
+  prepare(command_message_);
   law_->reset();
 }
 
@@ -46,32 +46,32 @@ bool MonolithicRun::step() {
   const int n = scenario_.robot.size();
   const StepStamp stamp = stampOf(step_, scenario_.step_ns);
 
-  toMessage(stamp, arm_.state(), controller_.name, chain_hash_, state_);
-  state_.checkpoint(scenario_.hasCheckpointAt(step_));  // so says the plant, of which every byte is the same here
-  reference_answer_(step_, reference_);
-  if (!fromMessage(state_, n, input_.state) || !fromMessage(reference_, n, input_.reference)) {
+  toMessage(stamp, arm_.state(), controller_.name, chain_hash_, state_message_);
+  // So says the plant, of which every byte is the same here.
+  state_message_.checkpoint(scenario_.hasCheckpointAt(step_));
+  reference_answer_(step_, reference_message_);
+  if (!fromMessage(state_message_, n, input_.state) || !fromMessage(reference_message_, n, input_.reference)) {
     return fail("a state or a reference is not finite");
   }
-  std::array<std::uint64_t, 3> inputs{hashOf(state_), hashOf(reference_), 0};
+  std::array<std::uint64_t, 3> inputs{hashOf(state_message_), hashOf(reference_message_), 0};
   dds::StepHashes hashes{.state = inputs[0]};
 
-  Contact contact;
   if (contact_answer_) {
-    if (!(*contact_answer_)(state_, contact_) || !fromMessage(contact_, contact)) {
+    if (!(*contact_answer_)(state_message_, contact_message_) || !fromMessage(contact_message_, contact_)) {
       return fail("a contact is not finite");
     }
-    hashes.contact = inputs[2] = hashOf(contact_);
-    if (law_info_.uses_force) input_.contact = contact;
+    hashes.contact = inputs[2] = hashOf(contact_message_);
+    if (law_info_.uses_force) input_.contact = contact_;
   }
 
   if (const LawStatus status = law_->step(input_, effort_); status != LawStatus::kOk) {
     return fail(controller_.name + " has no effort to give: " + toString(status));
   }
   const std::size_t used = law_info_.uses_force ? 3 : 2;
-  toMessage(stamp, controller_.name, effort_, dds::inputsHash(std::span(inputs).first(used)), command_);
-  hashes.command = hashOf(command_);
+  toMessage(stamp, controller_.name, effort_, dds::inputsHash(std::span(inputs).first(used)), command_message_);
+  hashes.command = hashOf(command_message_);
 
-  if (!arm_.move(effort_, contact)) {
+  if (!arm_.move(effort_, contact_)) {
     return fail("the motion is no longer finite: the step may be too long for the law's gains");
   }
   chain_hash_ = dds::chainStep(chain_hash_, hashes);

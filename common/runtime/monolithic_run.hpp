@@ -37,6 +37,10 @@ class MonolithicRun {
   [[nodiscard]] std::uint64_t steps() const { return step_; }
   /// At the start of the open step.
   [[nodiscard]] const RobotState& state() const { return arm_.state(); }
+  // Of the step done last: what the law was given and what it gave, and what the tip felt.
+  [[nodiscard]] const LawInput& input() const { return input_; }
+  [[nodiscard]] const JointVector& effort() const { return effort_; }
+  [[nodiscard]] const Contact& contact() const { return contact_; }
   /// Of all payloads of the loop up to the step before.
   [[nodiscard]] std::uint64_t chainHash() const { return chain_hash_; }
   /// Why the run cannot go on; empty while it can.
@@ -62,10 +66,11 @@ class MonolithicRun {
   std::string failure_;
   LawInput input_;
   JointVector effort_;
-  msg::PlantState state_;
-  msg::Reference reference_;
-  msg::Contact contact_;
-  msg::JointCommand command_;
+  Contact contact_;  // zero without an environment
+  msg::PlantState state_message_;
+  msg::Reference reference_message_;
+  msg::Contact contact_message_;
+  msg::JointCommand command_message_;
   std::vector<std::byte> buffer_;
 };
 

@@ -2,10 +2,8 @@
 
 #include <stdexcept>
 
-#include "control/arm.hpp"
-#include "control/law.hpp"
-#include "environment/plane.hpp"
 #include "robot/kinematics.hpp"
+#include "runtime/monolithic_run.hpp"
 #include "support/processes.hpp"
 
 namespace baton::test {
@@ -24,16 +22,18 @@ Trace emptyTrace(const Scenario& scenario) {
   trace.h_e.resize(6, steps);
   trace.h_d.resize(6, steps);
   trace.holders.assign(static_cast<std::size_t>(steps), scenario.active);
+  trace.chain.resize(static_cast<std::size_t>(steps));
   return trace;
 }
 
-void fill(Trace& trace, Eigen::Index k, const LawInput& input, const JointVector& command) {
-  const RobotState& state = input.state;
-  const Reference& reference = input.reference;
+/// The step that the run has done last.
+void fill(Trace& trace, Eigen::Index k, const MonolithicRun& run) {
+  const RobotState& state = run.input().state;
+  const Reference& reference = run.input().reference;
   trace.q.col(k) = state.q;
   trace.qd.col(k) = state.qd;
   trace.tau.col(k) = state.tau_applied;
-  trace.command.col(k) = command;
+  trace.command.col(k) = run.effort();
   trace.q_d.col(k) = reference.q;
   trace.qd_d.col(k) = reference.qd;
   trace.qdd_d.col(k) = reference.qdd;
@@ -42,7 +42,7 @@ void fill(Trace& trace, Eigen::Index k, const LawInput& input, const JointVector
   trace.orientation.col(k) = rotationVector(reference.X_WE.R * state.X_WE.R.transpose());
   trace.zyz.col(k) = zyzFromRotation(state.X_WE.R);
   trace.zyz_d.col(k) = zyzFromRotation(reference.X_WE.R);
-  trace.h_e.col(k) = input.contact.h_e;
+  trace.h_e.col(k) = run.contact().h_e;
   trace.h_d.col(k) = reference.h_d;
 }
 
@@ -62,21 +62,13 @@ Scenario reportScenario(const std::string& name, const std::vector<TextChange>& 
 
 Trace simulate(const Scenario& scenario) {
   Trace trace = emptyTrace(scenario);
-  Arm arm(trace.scenario.robot, trace.scenario.armConfig());
-  const Trajectory trajectory(scenario.robot, scenario.trajectory);
-  const ControllerConfig& holder = scenario.controller(scenario.active);
-  const auto law = makeLaw(holder.law, scenario.robot, holder.parameters);
-  law->reset();
-  LawInput input;
-  input.dt_s = scenario.stepSeconds();
-  JointVector command;
+  Scenario endless = scenario;
+  endless.end_step = 0;  // what is recorded of the last step is all but the motion after it
+  MonolithicRun run(endless);
   for (Eigen::Index k = 0; k < trace.steps(); ++k) {
-    input.state = arm.state();
-    input.contact = planesContact(scenario.walls, input.state.X_WE.p, input.state.V_WE.head<3>());
-    trajectory.evaluate(trace.time(k), input.reference);
-    if (law->step(input, command) != LawStatus::kOk || !arm.move(command, input.contact))
-      throw std::runtime_error(scenario.name + " fails at step " + std::to_string(k));
-    fill(trace, k, input, command);
+    trace.chain[static_cast<std::size_t>(k)] = run.chainHash();
+    if (!run.step()) throw std::runtime_error(scenario.name + ": " + run.failure());
+    fill(trace, k, run);
   }
   return trace;
 }

@@ -1,5 +1,4 @@
-/// Runs of the report's scenarios in this process, for tests of what is made of recordings: arm, wall, trajectory and
-/// law step by step as their services would have it, without messages.
+/// Runs of the report's scenarios in this process, for tests of what is made of recordings.
 #pragma once
 
 #include <string>

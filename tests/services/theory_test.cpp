@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -115,6 +116,10 @@ Fault higherPeak(Signal signal, Eigen::Index row, const std::string& check) {
             double& value = (runs[0].*signal)(row, peak);
             value += std::copysign(kBeyond * allowed(named(good, check)), value);
           }};
+}
+
+Fault oneBitOff() {
+  return {"a bit of one step", [](Traces& runs, const Checks&) { runs[0].chain[runs[0].chain.size() / 2] ^= 1; }};
 }
 
 Fault largestErrorLarger() {
@@ -231,6 +236,7 @@ const Experiment kAdmittance{"fig44_admittance", {{"duration_s: 8", "duration_s:
 const Experiment kForce{"fig49_force", {}};
 const Experiment kForceOutside{"fig51_force_outside", {}};
 const Experiment kParallel{"fig53_parallel", {}};
+const Experiment kSpringHeld{"../cosim/spring_held", {}};
 
 std::vector<Case> cases() {
   const std::vector<Fault> yielding_tip = {tipOffAtTheEnd(), forceOffAtTheEnd(),
@@ -321,6 +327,11 @@ std::vector<Case> cases() {
       {"parallel_goal",
        {kParallel},
        {tipOffAtTheEnd(), forceOffAtTheEnd(), mistaken(kParallel, {"force_N: [0, 0, 3]", "force_N: [0, 0, 3.0006]"})}},
+      {"same_bytes_in_one_process", {kSpringHeld}, {oneBitOff()}},
+      {"coupling_growth",
+       {kSpringHeld},
+       {mistaken(kSpringHeld, {"stiffness_N_per_m: 1000", "stiffness_N_per_m: 1000.002"}),
+        mistaken(kSpringHeld, {"stiffness_N_per_m: 1000", "stiffness_N_per_m: 1005"})}},
   };
 }
 
@@ -379,6 +390,7 @@ TEST_P(TheoryCheck, DoesNotPassOnWhatWasNotRecorded) {
             &Trace::p_WE_d, &Trace::orientation, &Trace::zyz, &Trace::zyz_d, &Trace::h_e, &Trace::h_d}) {
         (trace.*signal).middleCols(begin, count).setConstant(kNan);
       }
+      std::fill_n(trace.chain.begin() + begin, count, 0);
       const Checks bad = judge(holed);
       ASSERT_FALSE(bad.empty());
       for (std::size_t i = 0; i < bad.size(); ++i) {

@@ -32,7 +32,7 @@ struct Trace {
   Eigen::MatrixXd h_d;           // desired wrench, 6 x steps
   std::uint64_t first_step = 0;  // 0 unless the run is a branch
   std::vector<std::string> holders;
-  std::vector<std::uint64_t> chain;     // hash of all payloads of the loop up to the step before
+  std::vector<std::uint64_t> chain;     // hash of all payloads of the loop up to the step before; 0: none
   std::vector<msg::SwapOutcome> swaps;  // those that took place, in order
   std::uint64_t missed_steps = 0;
   bool is_complete = false;  // by the recording's own certificate
