@@ -10,6 +10,10 @@ case $tool in
   fastdds)
     mkdir -p "$out"
     log=$(fastddsgen -cs -replace -I "$include" -d "$out" "$idl" 2>&1) || { printf '%s\n' "$log" >&2; exit 1; }
+    # For a sequence of strings fastddsgen 2.3 makes as much room as the payload claims to need before it looks whether
+    # the bytes are there: a forged length would ask for gigabytes.
+    sed -i 's/^\( *\)\(m_[A-Za-z_]*\.resize(sequence_size);\)/\1if (sequence_size > 1024) throw eprosima::fastcdr::exception::NotEnoughMemoryException("a sequence of strings is too long");\n\1\2/' \
+      "$out/$(basename "$idl" .idl).cxx"
     # fastddsgen 2.3 does not know @unit and says so each time; the annotation is for the tools that read recordings.
     problems=$(printf '%s\n' "$log" | grep -iE 'warning|error' | grep -v 'Annotation unit not supported' || true)
     ;;
