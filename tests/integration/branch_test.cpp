@@ -98,7 +98,7 @@ TEST_F(Branch, RefusesWhatCannotBeGoneOnWith) {
   refused({"--at", "400", "--set", "controllers.impedance.parameters.kq=1"}, "kq");
   refused({"--at", "400", "--set", "controllers.nobody.law=joint_pd"}, "nobody");
   refused({"--at", "400", "--set", "step_s=0.001"}, "goes on with the step");
-  refused({"--at", "400", "--set", "duration_s=0.1"}, "an end after");
+  refused({"--at", "800", "--set", "duration_s=0.3"}, "an end after");
   refused({}, "--at");
 }
 
