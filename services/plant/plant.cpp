@@ -52,7 +52,8 @@ Plant::Plant(Service& service)
       state_out_(service.output(dds::topics::kPlantState, servicesBut(kPlantName, scenario_))),
       reply_out_(service.output(dds::topics::kSimReply)),
       status_out_(service.output(dds::topics::kSimStatus, servicesBut(kPlantName, scenario_))),
-      rewind_out_(service.output(dds::topics::kRewind, servicesBut(kPlantName, scenario_))),
+      // Nobody is required to take part in resets: a controller of somebody else may not. Who does waits for us.
+      rewind_out_(service.output(dds::topics::kRewind)),
       timing_out_(service.output(dds::topics::kTimingStatus)),
       plan_out_(service.output(dds::topics::kSwapPlan, withRecorder(controllerNames(scenario_), scenario_))),
       outcome_out_(service.output(dds::topics::kSwapOutcome, withRecorder({}, scenario_))) {
@@ -88,7 +89,7 @@ Plant::Plant(Service& service)
                     proceed();
                   });
   }
-  service.input(dds::topics::kRewindAck, servicesBut(kPlantName, scenario_),
+  service.input(dds::topics::kRewindAck, {},
                 [this](const msg::RewindAck& ack, const dds::RawSample&) { onRewindAck(ack); });
   service.onReady([this] {
     const std::lock_guard lock(service_.mutex());

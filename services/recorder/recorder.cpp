@@ -115,9 +115,7 @@ void Recorder::requireServices() {
   require(dds::topics::kJointCommand, controllers);
   require(dds::topics::kShadowCommand, controllers);
   require(dds::topics::kSwapAck, controllers);
-  std::vector<std::string> with_state = controllers;
-  with_state.emplace_back(kPlantName);
-  require(dds::topics::kCheckpoint, with_state);
+  require(dds::topics::kCheckpoint, {kPlantName});  // controllers that have checkpoints wait for us themselves
   require(dds::topics::kEvent, servicesBut(kRecorderName, scenario));
   require(dds::topics::kServiceManifest, servicesBut(kRecorderName, scenario));
 }
