@@ -9,7 +9,10 @@ tool=$1 idl=$2 include=$3 out=$4
 case $tool in
   fastdds)
     mkdir -p "$out"
-    log=$(fastddsgen -cs -replace -I "$include" -d "$out" "$idl" 2>&1) || { printf '%s\n' "$log" >&2; exit 1; }
+    # fastddsgen leaves preprocessed files, the included ones too, in a directory that several at once must not share.
+    scratch=$(mktemp -d)
+    trap 'rm -rf "$scratch"' EXIT
+    log=$(fastddsgen -cs -replace -t "$scratch" -I "$include" -d "$out" "$idl" 2>&1) || { printf '%s\n' "$log" >&2; exit 1; }
     # For a sequence of strings fastddsgen 2.3 makes as much room as the payload claims to need before it looks whether
     # the bytes are there: a forged length would ask for gigabytes.
     sed -i 's/^\( *\)\(m_[A-Za-z_]*\.resize(sequence_size);\)/\1if (sequence_size > 1024) throw eprosima::fastcdr::exception::NotEnoughMemoryException("a sequence of strings is too long");\n\1\2/' \
