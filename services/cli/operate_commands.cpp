@@ -14,7 +14,7 @@
 #include "runtime/json.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/service_options.hpp"
-#include "runtime/timing_json.hpp"
+#include "runtime/timing.hpp"
 #include "timing_text.hpp"
 
 namespace baton {

@@ -15,6 +15,7 @@
 #include "runtime/log.hpp"
 #include "runtime/monolithic_run.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/timing.hpp"
 
 namespace baton {
 namespace {
@@ -100,7 +101,12 @@ nlohmann::ordered_json runInProcess(const std::string& scenario_name) {
   status.holder(scenario.active);
   const double startup_s = secondsSince(launched);
   const Clock::time_point started = Clock::now();
+  Histogram period_ns;
+  Clock::time_point opened = started;
   while (run.step()) {
+    const Clock::time_point now = Clock::now();
+    period_ns.record(std::chrono::nanoseconds(now - opened).count());
+    opened = now;
     constexpr std::uint64_t kShownEvery = 1000;  // steps
     if (run.steps() % kShownEvery != 0) continue;
     status.step(run.steps());
@@ -110,6 +116,9 @@ nlohmann::ordered_json runInProcess(const std::string& scenario_name) {
   }
   const double elapsed_s = secondsSince(started);
   const double sim_time_s = static_cast<double>(run.steps()) * scenario.stepSeconds();
+  msg::TimingStatus timing;
+  timing.step(run.steps());
+  timing.period(timeSpread(period_ns));
   const bool finished = run.failure().empty();
   return {{"scenario", scenario.name},
           {"scenario_file", file},
@@ -123,6 +132,7 @@ nlohmann::ordered_json runInProcess(const std::string& scenario_name) {
           {"real_time_ratio", elapsed_s > 0.0 ? sim_time_s / elapsed_s : 0.0},
           {"startup_s", startup_s},
           {"missed_steps", 0},
+          {"timing", toJson(timing)},
           {"chain_hash", std::to_string(run.chainHash())},
           {"recording", nullptr},
           {"swaps", nlohmann::ordered_json::array()}};

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "runtime/json.hpp"
-#include "runtime/timing_json.hpp"
+#include "runtime/timing.hpp"
 
 namespace baton {
 namespace {

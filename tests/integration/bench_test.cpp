@@ -10,16 +10,17 @@ TEST(LoopBench, MeasuresBatonBesideTheRawChainAndSeveralCellsAtOnce) {
   const Bench bench;
   const Finished finished = runProgram(programFolder() / "baton-bench",
                                        {"--rounds", "1", "--steps", "300", "--json", "--only", "raw-3-hops", "force",
-                                        "raw-3-hops-observed", "force-recorded", "cells-2"},
+                                        "raw-3-hops-observed", "force-recorded", "in-process", "cells-2"},
                                        bench.folder());
   ASSERT_EQ(finished.exit_code, 0) << finished.err;
   const nlohmann::json report = nlohmann::json::parse(finished.out);
 
-  ASSERT_EQ(report.at("cases").size(), 5U);
+  ASSERT_EQ(report.at("cases").size(), 6U);
   std::map<std::string, double> p50_us;
   for (const auto& one : report.at("cases")) {
     SCOPED_TRACE(one.dump());
-    EXPECT_EQ(one.at("processes"), 4 * one.at("cells").get<int>() + (one.at("recorded").get<bool>() ? 1 : 0));
+    const int with_recorder = one.at("recorded").get<bool>() ? 1 : 0;
+    EXPECT_EQ(one.at("processes"), one.at("transport") == "none" ? 1 : 4 * one.at("cells").get<int>() + with_recorder);
     p50_us[one.at("name")] = one.at("p50_us").at("median");
     EXPECT_GT(one.at("p50_us").at("median"), 0.0);
     EXPECT_LE(one.at("p50_us").at("median"), one.at("p99_us").at("median"));
@@ -41,7 +42,7 @@ TEST(LoopBench, MeasuresBatonBesideTheRawChainAndSeveralCellsAtOnce) {
     if (one.at("target").is_null()) continue;
     EXPECT_EQ(one.at("reached").get<bool>(), ratio <= one.at("target").get<double>());
   }
-  EXPECT_EQ(measured, 3);
+  EXPECT_EQ(measured, 4);
   EXPECT_GT(report.at("resident_MB").at("plant"), 0.0);
   EXPECT_GT(report.at("resident_MB").at("recorder"), 0.0);
   EXPECT_NE(finished.err.find("raw-3-hops"), std::string::npos) << finished.err;  // the table

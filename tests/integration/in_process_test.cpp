@@ -28,6 +28,7 @@ void expectSameBytes(const Bench& bench, const std::string& scenario) {
     EXPECT_EQ(alone.at(key), distributed.at(key)) << key;
   }
   EXPECT_GT(alone.at("elapsed_s"), 0.0);
+  EXPECT_EQ(alone.at("timing").at("period_us").at("count"), alone.at("steps"));
 }
 
 TEST(InProcess, AForceLawInContactHasTheSameBytes) {

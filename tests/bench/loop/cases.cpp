@@ -26,15 +26,11 @@ Measurement measureRun(const Case& one, int steps, Programs& programs) {
       "--transport", one.shared_memory ? "shm" : "udp",
       "--json"};
   if (one.kind == Case::Kind::kInProcess) {
-    arguments.emplace_back("--in-process");  // which records nothing anyway
+    arguments.emplace_back("--in-process");
   } else if (!one.recorded) {
     arguments.emplace_back("--no-recording");
   }
   const Json result = programs.run("baton", std::move(arguments));
-  if (one.kind == Case::Kind::kInProcess) {  // no step waits for another process: the mean says it all
-    const double mean_s = result.at("elapsed_s").get<double>() / result.at("steps").get<double>();
-    return {.p50_us = 1e6 * mean_s, .steps_per_s = 1.0 / mean_s};
-  }
   const Json& period = result.at("timing").at("period_us");
   Measurement measured{.p50_us = period.at("p50"),
                        .p99_us = period.at("p99"),

@@ -14,7 +14,7 @@ struct Case {
   enum class Kind {
     kRaw,        // the yardstick
     kBaton,      // `baton run`
-    kInProcess,  // `baton run --in-process`: no DDS, an upper bound
+    kInProcess,  // `baton run --in-process`: no DDS, a lower bound of what a step takes
     kCells       // several runs at once
   };
   std::string name;  // for --only, and in the JSON

@@ -25,9 +25,8 @@ double referenceAt(std::uint64_t step) { return 2.0 * static_cast<double>(step);
 double effortOf(double reference, double position, double force) { return reference - position + force; }
 
 /// In a receive thread there is nobody to catch: the process ends, and with it the chain.
-[[noreturn]] void fail(const char* what, std::uint64_t found, std::uint64_t expected) {
-  std::fprintf(stderr, "baton-raw-chain: %s: expected step %llu, found %llu\n", what,
-               static_cast<unsigned long long>(expected), static_cast<unsigned long long>(found));
+[[noreturn]] void fail(const std::string& what) {
+  std::fprintf(stderr, "baton-raw-chain: %s\n", what.c_str());
   _exit(1);
 }
 
@@ -36,7 +35,9 @@ class Sequence {
  public:
   explicit Sequence(const char* what) : what_(what) {}
   void accept(std::uint64_t step) {
-    if (step != next_) fail(what_, step, next_);
+    if (step != next_) {
+      fail(std::string(what_) + ": expected step " + std::to_string(next_) + ", found " + std::to_string(step));
+    }
     ++next_;
   }
   [[nodiscard]] std::uint64_t count() const { return next_; }
@@ -54,7 +55,7 @@ void stamp(Message& message, std::uint64_t step) {
 }
 
 void write(dds::DataWriter* writer, void* message) {
-  if (!writer->write(message)) fail("DDS refused a sample", 0, 0);
+  if (!writer->write(message)) fail("DDS refused a sample");
 }
 
 class ChainPlant final : public Plant {
@@ -99,7 +100,7 @@ class ChainPlant final : public Plant {
     const double force = chain_.hops == 3 ? positionAt(step) : 0.0;
     for (const double effort : command.effort()) {
       if (effort != effortOf(referenceAt(step), positionAt(step), force))
-        fail("an effort that is not of it", step, step);
+        fail("command: its effort does not come from the samples of step " + std::to_string(step));
     }
     state_.applied_effort(command.effort());
     advance();

@@ -24,19 +24,11 @@ constexpr std::array<const char*, 6> kStandbys{"  - {name: joint, law: joint_inv
 
 std::string scenarioText(bool uses_force, int standbys, int steps, double rate) {
   const double step_s = static_cast<double>(kStep_ns) * 1e-9;
-  std::string text =
-      "name: bench\n"
-      "robot: rpp\n"
-      "step_s: " +
-      number(step_s) +
-      "\n"
-      "substeps: 4\n"
-      "duration_s: " +
-      number(step_s * steps) +
-      "\n"
-      "rate: " +
-      (rate > 0.0 ? number(rate) : "max") +
-      "\n"
+  std::string text = "name: bench\nrobot: rpp\n";
+  text += "step_s: " + number(step_s) + "\n";
+  text += "duration_s: " + number(step_s * steps) + "\n";
+  text += "rate: " + (rate > 0.0 ? number(rate) : "max") + "\n";
+  text +=
       "environment:\n"
       "  walls: [{point_m: [0, 0, 0.70], normal: [0, 0, 1], stiffness_N_per_m: 200}]\n"
       "trajectory:\n"
