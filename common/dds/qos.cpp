@@ -52,6 +52,9 @@ void applyProfile(Profile profile, DataWriterQos& qos) {
   // A lost datagram is noticed within one heartbeat; the default of 3 s would stall a lockstep loop that long.
   qos.reliable_writer_qos().times.heartbeatPeriod = {0, 20'000'000};
   qos.reliable_writer_qos().times.nackResponseDelay = {0, 0};
+  // How long what was just sent may still be on its way, and asking for it again goes unheard. With the default of 0 a
+  // timer runs out behind every sample to every reader: a thread is woken each time, which costs a third of a step.
+  qos.reliable_writer_qos().times.nackSupressionDuration = {0, 10'000'000};
   // Otherwise every sample behind a full history, which is every one from step 1024 on, carries a heartbeat to every
   // reader, each of which answers it.
   qos.reliable_writer_qos().disable_heartbeat_piggyback = true;

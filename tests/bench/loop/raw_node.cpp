@@ -87,6 +87,7 @@ DataWriter* Node::createWriter(const TypeSupport& type, const std::string& topic
   qos.publish_mode().kind = SYNCHRONOUS_PUBLISH_MODE;
   qos.reliable_writer_qos().times.heartbeatPeriod = {0, 20'000'000};
   qos.reliable_writer_qos().times.nackResponseDelay = {0, 0};
+  qos.reliable_writer_qos().times.nackSupressionDuration = {0, 10'000'000};
   qos.reliable_writer_qos().disable_heartbeat_piggyback = true;
   return made(publisher_->create_datawriter(createTopic(type, topic), qos), "a writer on " + topic);
 }
