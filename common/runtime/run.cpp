@@ -31,7 +31,8 @@ int runService(int argc, char** argv, const std::string& role, const std::functi
     setUpLog(options.name);
     Scenario scenario = loadScenario(options.scenario_file, options.robot_file);
     scenario.recording.enabled = scenario.recording.enabled && options.recording;
-    const std::vector<std::string> refusals = applyScheduling(options.scheduling);  // DDS's threads inherit it
+    // DDS's threads inherit it.
+    const std::vector<std::string> refusals = applyScheduling(options.scheduling, scenario.mode == SimMode::kLockstep);
     Service service(options, std::move(scenario));
     for (const std::string& refusal : refusals) service.event(msg::SEVERITY_WARNING, "scheduling", refusal);
     held.release();

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstring>
 #include <sstream>
+#include <tuple>
 
 #include "base/error.hpp"
 
@@ -38,8 +39,12 @@ std::vector<std::string> toArguments(const Scheduling& scheduling) {
   return arguments;
 }
 
-std::vector<std::string> applyScheduling(const Scheduling& wanted) {
+std::vector<std::string> applyScheduling(const Scheduling& wanted, bool in_batches) {
   std::vector<std::string> refusals;
+  if (in_batches && wanted.fifo_priority == 0) {
+    const sched_param none{};
+    std::ignore = sched_setscheduler(0, SCHED_BATCH, &none);  // needs no right; where it is not known, nothing is lost
+  }
   if (!wanted.cpus.empty()) {
     cpu_set_t set;
     CPU_ZERO(&set);

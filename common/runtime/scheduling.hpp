@@ -1,5 +1,6 @@
-/// How the kernel is to treat the processes of the loop: first-in-first-out real-time scheduling and fixed cores, where
-/// the deployment asks for them and the system allows it.
+/// How the kernel is to treat the processes of the loop: in batches while they wait for each other and not for the
+/// clock; first-in-first-out real-time scheduling and fixed cores, where the deployment asks for them and the system
+/// allows it.
 #pragma once
 
 #include <string>
@@ -20,6 +21,8 @@ struct Scheduling {
 
 /// Asks the kernel, for this thread and all that it starts. Returns one sentence for each wish that was refused: a run
 /// is possible without. Throws UsageError for a wish that cannot be meant.
-[[nodiscard]] std::vector<std::string> applyScheduling(const Scheduling& wanted);
+/// @param in_batches  without a priority: who is woken does not interrupt who runs (SCHED_BATCH). A process that sends
+///                    a sample to three others sends it to all three before one of them takes the core.
+[[nodiscard]] std::vector<std::string> applyScheduling(const Scheduling& wanted, bool in_batches);
 
 }  // namespace baton

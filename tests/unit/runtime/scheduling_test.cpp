@@ -20,7 +20,7 @@ TEST(Scheduling, ReadsCoresAndRefusesWhatIsNone) {
 
 TEST(Scheduling, StaysOnTheCoresAskedFor) {
   std::thread([] {  // this thread alone, not the test's
-    EXPECT_TRUE(applyScheduling({.cpus = "0"}).empty());
+    EXPECT_TRUE(applyScheduling({.cpus = "0"}, false).empty());
     cpu_set_t set;
     ASSERT_EQ(sched_getaffinity(0, sizeof set, &set), 0);
     EXPECT_EQ(CPU_COUNT(&set), 1);
@@ -31,19 +31,27 @@ TEST(Scheduling, StaysOnTheCoresAskedFor) {
 
 TEST(Scheduling, GetsThePriorityOrSaysWhyNot) {
   std::thread([] {
-    const std::vector<std::string> refusals = applyScheduling({.fifo_priority = 10, .cpus = {}});
+    const std::vector<std::string> refusals = applyScheduling({.fifo_priority = 10, .cpus = {}}, true);
     if (refusals.empty()) {
       EXPECT_EQ(sched_getscheduler(0), SCHED_FIFO);
     } else {
       ASSERT_EQ(refusals.size(), 1U);
       EXPECT_NE(refusals.front().find("CAP_SYS_NICE"), std::string::npos) << refusals.front();
-      EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER);
+      EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER) << "a wish for real time is not a wish for batches";
     }
   }).join();
 }
 
+TEST(Scheduling, RunsInBatchesAndSoDoesWhatItStarts) {
+  std::thread([] {
+    EXPECT_TRUE(applyScheduling({}, true).empty());
+    std::thread([] { EXPECT_EQ(sched_getscheduler(0), SCHED_BATCH); }).join();
+  }).join();
+}
+
 TEST(Scheduling, AsksForNothingWhenNothingIsWanted) {
-  EXPECT_TRUE(applyScheduling({}).empty());
+  EXPECT_TRUE(applyScheduling({}, false).empty());
+  EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER);
   EXPECT_TRUE(toArguments(Scheduling{}).empty());
   EXPECT_EQ(toArguments(Scheduling{.fifo_priority = 50, .cpus = "0"}),
             (std::vector<std::string>{"--fifo", "50", "--cpus", "0"}));
