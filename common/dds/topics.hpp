@@ -32,6 +32,7 @@ struct Topic {
 namespace topics {
 // clang-format off
 inline constexpr Topic<msg::PlantState>       kPlantState      {"plant_state",       "baton::msg::PlantState",       Profile::kLoop};
+inline constexpr Topic<msg::PlantState>       kPlantStateAgain {"plant_state_again", "baton::msg::PlantState",       Profile::kLoop};
 inline constexpr Topic<msg::Contact>          kContact         {"contact",           "baton::msg::Contact",          Profile::kLoop};
 inline constexpr Topic<msg::Reference>        kReference       {"reference",         "baton::msg::Reference",        Profile::kLoop};
 inline constexpr Topic<msg::JointCommand>     kJointCommand    {"joint_command",     "baton::msg::JointCommand",     Profile::kLoop};

@@ -68,7 +68,8 @@ void addRunOptions(CLI::App& command, RunRequest& request) {
   command.add_flag("--overwrite", request.overwrite, "replace the file --out names");
   command.add_flag("--no-recording", request.no_recording, "run without a recorder");
   addScheduling(command, request.scheduling);
-  command.add_option("--restarts", request.restarts, "how often a controller that dies is started again, to stand by")
+  command
+      .add_option("--restarts", request.restarts, "how often a part that dies is started again; not plant and recorder")
       ->check(CLI::Range(0, 1000));
 }
 

@@ -21,6 +21,10 @@ WallResponder::WallResponder(Service& service)
       answer_(service.scenario()) {
   service.input(dds::topics::kPlantState, {kPlantName},
                 [this](const msg::PlantState& message, const dds::RawSample&) { onState(message); });
+  service.input(dds::topics::kPlantStateAgain, {kPlantName},
+                [this](const msg::PlantState& message, const dds::RawSample&) {
+                  if (!answered_ || *answered_ < message.step()) onState(message);
+                });
   service.onRewind([this](std::uint64_t step) { return answered_ && *answered_ >= step; },
                    [this] { answered_.reset(); });
 }

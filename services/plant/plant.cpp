@@ -50,6 +50,7 @@ Plant::Plant(Service& service)
       effort_(JointVector::Zero(scenario_.robot.size())),
       outgoing_effort_(effort_),
       state_out_(service.output(dds::topics::kPlantState, servicesBut(kPlantName, scenario_))),
+      again_out_(service.output(dds::topics::kPlantStateAgain)),
       reply_out_(service.output(dds::topics::kSimReply)),
       status_out_(service.output(dds::topics::kSimStatus, servicesBut(kPlantName, scenario_))),
       // Nobody is required to take part in resets: a controller of somebody else may not. Who does waits for us.
@@ -161,6 +162,11 @@ void Plant::openStep() {
     master_.commandArrived(step);
   }
   planSwaps();
+}
+
+void Plant::askAgain() {
+  if (master_.phase() == SimPhase::kStarting || master_.isOver()) return;
+  again_out_.write(state_message_);
 }
 
 void Plant::scheduleSwaps() {
@@ -415,7 +421,9 @@ void Plant::watchLateness() {
     return proceed();
   }
   constexpr double kWarnAfter_s = 1.0;
-  if (late_s > kWarnAfter_s && warned_step_ != master_.step()) {
+  if (late_s < kWarnAfter_s) return;
+  askAgain();
+  if (warned_step_ != master_.step()) {
     warned_step_ = master_.step();
     service_.event(msg::SEVERITY_WARNING, "late", "the step waits for " + who);
   }

@@ -47,6 +47,7 @@ class Plant {
   void keepTorque();  // nobody commands the open step: the joints feel what they felt before
   void endStep();     // move the arm over the open step and open the next
   void openStep();    // publish the state of the step that has just opened
+  void askAgain();    // publish it once more, for who was not there
   void finish();
   // plant_rewind.cpp: back to the first step
   void askForReset(std::uint64_t request_id);
@@ -132,6 +133,7 @@ class Plant {
   std::string end_reason_;
 
   dds::Writer<msg::PlantState>& state_out_;
+  dds::Writer<msg::PlantState>& again_out_;
   dds::Writer<msg::SimReply>& reply_out_;
   dds::Writer<msg::SimStatus>& status_out_;
   dds::Writer<msg::Rewind>& rewind_out_;

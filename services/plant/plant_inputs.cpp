@@ -65,6 +65,7 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
       }
     }
     startWhenAllAreReady();
+    if (member == kBrake) askAgain();  // a part that was started again has not seen the open step
   } else if (status.state() == msg::SERVICE_FAILED && !master_.isOver()) {
     if (member == kBrake || master_.phase() == SimPhase::kStarting)
       return abort(name + " failed: " + status.text().c_str());

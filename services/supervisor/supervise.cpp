@@ -28,7 +28,8 @@ ExitCode supervise(int argc, char** argv) {
   addTransport(app, info.transport);
   app.add_option("--out", info.recording, "recording to write (default: in the run's folder)");
   app.add_flag("--no-recording", no_recording, "without a recorder");
-  app.add_option("--restarts", deployment.restarts, "how often a controller that dies is started again, to stand by")
+  app.add_option("--restarts", deployment.restarts,
+                 "how often a part that dies is started again; not plant and recorder")
       ->check(CLI::Range(0, 1000));
   std::string checkpoint;
   bool starts_paused = false;

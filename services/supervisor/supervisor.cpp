@@ -111,7 +111,8 @@ void Supervisor::start(const std::string& role, const std::string& name, const s
   if (role == kRecorderName) options.scheduling = {};  // the loop must not wait for a file
   roles_[name] = role;
   if (!status_out_.contains(name)) status_out_[name] = &service_.output(dds::topics::kServiceStatus);
-  restarts_left_.try_emplace(name, role == "controller" ? deployment_.restarts : 0);
+  // The plant and the recorder have what nobody else knows.
+  restarts_left_.try_emplace(name, role == kPlantName || role == kRecorderName ? 0 : deployment_.restarts);
   children_.push_back(std::make_unique<Child>(
       service_.executor(),
       Child::Command{.name = name,
@@ -155,8 +156,16 @@ void Supervisor::childFailed(Child& child, const Child::End& end) {
   const std::string why = name + " ended in the middle of the run: " + end.text();
   const bool has_started = startup_s_ >= 0.0;
   service_.event(msg::SEVERITY_ERROR, "child_exit", why);
+  const bool is_controller = roles_[name] == "controller";
+  const bool is_restarted = has_started && restarts_left_[name]-- > 0;
+  if (has_started && (is_controller || is_restarted)) {
+    spdlog::error("{}\n{}", why, lastLines(child.command().log_file, 5));
+    fail(ExitCode::kFailed, why);
+  }
+  // Who comes back is waited for like anybody who is late; what the end of the others means, the plant decides.
+  if (is_restarted && !is_controller) return restart(name);
 
-  msg::ServiceStatus failed;  // the plant decides what it means for the run
+  msg::ServiceStatus failed;
   failed.name(name);
   failed.role(roles_[name]);
   failed.state(msg::SERVICE_FAILED);
@@ -166,11 +175,9 @@ void Supervisor::childFailed(Child& child, const Child::End& end) {
     const std::lock_guard lock(service_.mutex());
     status_out_.at(name)->write(failed);
   }
-  if (roles_[name] == "controller" && has_started) {
+  if (is_controller && has_started) {
     // The plant goes on without it: the baton is somebody else's by now.
-    spdlog::error("{}\n{}", why, lastLines(child.command().log_file, 5));
-    fail(ExitCode::kFailed, why);
-    if (restarts_left_[name]-- > 0) restart(name);
+    if (is_restarted) restart(name);
     return;
   }
   fail(isRefusal(end) ? static_cast<ExitCode>(end.value) : ExitCode::kFailed,
@@ -200,7 +207,8 @@ void Supervisor::fail(ExitCode code, const std::string& reason) {
 
 void Supervisor::restart(const std::string& name) {
   try {
-    start("controller", name, service_.scenario().controller(name).law);
+    const std::string role = roles_[name];
+    start(role, name, role == "controller" ? service_.scenario().controller(name).law : "");
   } catch (const Error& error) {
     spdlog::error("{} is not started again: {}", name, error.what());
   }

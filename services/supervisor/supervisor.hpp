@@ -19,7 +19,7 @@ namespace baton {
 
 struct Deployment {
   RunInfo info;
-  int restarts = 0;  // how often a controller that dies is started again, to stand by
+  int restarts = 0;  // how often each part that dies, but plant and recorder, is started again
 };
 
 class Supervisor {

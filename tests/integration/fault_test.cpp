@@ -198,6 +198,34 @@ TEST(Fault, ADeadControllerIsStartedAgainToStandBy) {
   EXPECT_NE(result.at("reason").get<std::string>().find("pd"), std::string::npos) << result;
 }
 
+/// A part that answers every step from what it is told.
+class RestartedPart : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(RestartedPart, GoesOnAtTheStepThatWaitsForIt) {
+  const Bench bench;
+  const nlohmann::json undisturbed =
+      bench.batonJson({"run", bench.write("undisturbed.yaml", shortContact()), "--no-recording", "--json"});
+  const LiveRun run(bench, shortContact(), {"--paused", "--restarts", "1"});
+  ASSERT_EQ(bench.baton({"sim", "step", "150"}).exit_code, 0);
+  // Stopped first, so that it owes an answer when it dies.
+  const int pid = run.pidOf(GetParam());
+  ASSERT_EQ(kill(pid, SIGSTOP), 0);
+  ASSERT_EQ(bench.baton({"sim", "resume"}).exit_code, 0);
+  EXPECT_TRUE(eventually([&] { return bench.batonJson({"status", "--json"}).at("waiting_for") != ""; }));
+  ASSERT_EQ(kill(pid, SIGKILL), 0);
+
+  const nlohmann::json result = run.result();
+  EXPECT_EQ(result.at("state"), "finished") << result;
+  EXPECT_EQ(result.at("chain_hash"), undisturbed.at("chain_hash"));
+  EXPECT_EQ(result.at("exit_code"), 1) << "a process died: " << result;
+  EXPECT_NE(result.at("reason").get<std::string>().find(GetParam()), std::string::npos) << result;
+  EXPECT_FALSE(result.at("recording").at("complete")) << "nobody vouches for what the dead one sent";
+  EXPECT_EQ(bench.batonJson({"bag", "hash", run.recording, "--json"}).at("hash"), undisturbed.at("chain_hash"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, RestartedPart, ::testing::Values("environment", "trajectory"),
+                         [](const auto& service) { return service.param; });
+
 TEST(Fault, WithoutAFallbackTheBrakeHolds) {
   const Bench bench;
   const LiveRun run(bench, endless());

@@ -63,6 +63,58 @@ INSTANTIATE_TEST_SUITE_P(Each, StoppedService,
                          ::testing::Values("plant", "environment", "trajectory", "recorder", "tracking", "force"),
                          [](const auto& service) { return service.param; });
 
+/// Stops the holder for good at a step; the scenario's policy decides.
+struct SilentHolder {
+  explicit SilentHolder(const Bench& bench, const std::string& policy)
+      : run(bench, shortContact("baton: {fallback: [pd]}\nlate: {policy: " + policy + ", after_s: 0.3}\n"),
+            {"--paused"}),
+        pid(run.pidOf("tracking")) {
+    EXPECT_EQ(bench.baton({"sim", "step", "150"}).exit_code, 0);
+    EXPECT_EQ(kill(pid, SIGSTOP), 0);
+    EXPECT_EQ(bench.baton({"sim", "resume"}).exit_code, 0);
+  }
+  LiveRun run;
+  int pid;
+};
+
+TEST(LatePolicy, WaitGoesOnWhereItWasHoweverLongItTook) {
+  const Bench bench;
+  const std::string expected = undisturbedHash(bench);
+  const SilentHolder silent(bench, "wait");
+  // The plant warns later than after_s, where the other policies decide.
+  EXPECT_TRUE(eventually([&] {
+    return bench.baton({"logs", "plant"}).out.find("the step waits for") != std::string::npos;
+  }));
+  EXPECT_EQ(kill(silent.pid, SIGCONT), 0);
+  const nlohmann::json result = silent.run.result();
+  EXPECT_EQ(result.at("exit_code"), 0) << result;
+  EXPECT_EQ(result.at("chain_hash"), expected);
+}
+
+TEST(LatePolicy, FallbackGivesTheBatonToTheNext) {
+  const Bench bench;
+  const SilentHolder silent(bench, "fallback");
+  const nlohmann::json result = silent.run.result();
+  EXPECT_EQ(result.at("state"), "finished") << result;
+  EXPECT_EQ(result.at("exit_code"), 1) << "a controller lost the baton: " << result;
+  const auto& failover = result.at("swaps").at(0);
+  EXPECT_EQ(failover.at("outgoing"), "tracking");
+  EXPECT_EQ(failover.at("incoming"), "pd");
+  EXPECT_NE(failover.at("reason").get<std::string>().find("silent"), std::string::npos) << failover;
+}
+
+TEST(LatePolicy, AbortEndsTheRunWithTheReason) {
+  const Bench bench;
+  const SilentHolder silent(bench, "abort");
+  const nlohmann::json result = silent.run.result();
+  EXPECT_EQ(result.at("exit_code"), 4) << result;
+  EXPECT_EQ(result.at("state"), "aborted") << result;
+  // The step it was stopped in, or the next when it had commanded that one.
+  EXPECT_GE(result.at("steps"), 150) << result;
+  EXPECT_LE(result.at("steps"), 151) << result;
+  EXPECT_NE(result.at("reason").get<std::string>().find("waits for"), std::string::npos) << result;
+}
+
 TEST(Straggler, LostDatagramsChangeNoByteAndLeaveNoGap) {
   const Bench bench;
   const std::string expected = undisturbedHash(bench);
