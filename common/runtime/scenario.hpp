@@ -31,7 +31,7 @@ struct PlannedSwap {
 };
 
 struct BatonConfig {
-  std::uint64_t margin_steps = 5;     // steps between the decision and the swap
+  std::uint64_t margin_steps = 5;     // steps between the decision and the swap; 3 in realtime when left out
   std::uint64_t blend_steps = 200;    // over which the difference between the two torques fades
   double max_effort_step = 50.0;      // forecast above this is refused, any joint [N m or N]
   std::vector<std::string> fallback;  // who takes over from a holder that fails, in order; then the brake
@@ -57,8 +57,10 @@ struct Scenario {
   int substeps = 1;
   std::uint64_t end_step = 0;  // 0: until stopped
   SimMode mode = SimMode::kLockstep;
-  double rate = 0.0;                    // simulated seconds per second, 0 for as fast as possible; 1 in realtime
-  std::uint64_t max_missed_steps = 20;  // realtime: steps an old torque may be kept before the brake
+  double rate = 0.0;  // simulated seconds per second, 0 for as fast as possible; 1 in realtime
+  /// Realtime: steps an old torque may be kept; a holder that misses one more is given up. When left out: 20, or fewer,
+  /// so that a holder that falls silent is given up within 20 ms.
+  std::uint64_t max_missed_steps = 20;
   LatePolicy late_policy = LatePolicy::kAbort;
   double late_after_s = 30.0;  // wall time
   JointVector start_q;

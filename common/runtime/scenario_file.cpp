@@ -59,6 +59,12 @@ double readRate(const YamlMap& map, SimMode mode) {
   return !node || is_max ? 0.0 : node->number({0.0, 1000.0, "times real time, or max", true});
 }
 
+/// A holder is given up in the step after those, so they and that step last 20 ms at most; at least one is forgiven.
+std::int64_t defaultMissedSteps(std::int64_t step_ns) {
+  constexpr std::int64_t kSilence_ns = 20'000'000;
+  return std::clamp<std::int64_t>(kSilence_ns / step_ns - 1, 1, 20);
+}
+
 void readTime(const YamlMap& map, Scenario& scenario) {
   scenario.step_ns = readStep(map["step_s"]);
   scenario.substeps = static_cast<int>(map.integerOr("substeps", 1, 1000, scenario.substeps));
@@ -67,7 +73,8 @@ void readTime(const YamlMap& map, Scenario& scenario) {
     scenario.mode = mode->oneOf<SimMode>({{"lockstep", SimMode::kLockstep}, {"realtime", SimMode::kRealtime}});
   }
   scenario.rate = readRate(map, scenario.mode);
-  scenario.max_missed_steps = static_cast<std::uint64_t>(map.integerOr("max_missed_steps", 0, 1'000'000, 20));
+  scenario.max_missed_steps = static_cast<std::uint64_t>(
+      map.integerOr("max_missed_steps", 0, 1'000'000, defaultMissedSteps(scenario.step_ns)));
   if (const auto node = map.find("late")) {
     const YamlMap late = node->map({"policy", "after_s"});
     if (const auto policy = late.find("policy")) {
@@ -215,10 +222,13 @@ std::string readMember(const YamlNode& node, const Scenario& scenario) {
 
 void readBaton(const YamlMap& map, Scenario& scenario) {
   double blend_s = 0.1;
+  // At 1 kHz a request then takes effect within 5 ms: it waits for the next step, the margin, and no more.
+  if (scenario.mode == SimMode::kRealtime) scenario.baton.margin_steps = 3;
   if (const auto node = map.find("baton")) {
     const YamlMap baton = node->map({"margin_steps", "blend_s", "max_effort_step", "fallback"});
     BatonConfig& config = scenario.baton;
-    config.margin_steps = static_cast<std::uint64_t>(baton.integerOr("margin_steps", 1, 1000, 5));
+    config.margin_steps =
+        static_cast<std::uint64_t>(baton.integerOr("margin_steps", 1, 1000, config.margin_steps));
     config.max_effort_step =
         baton.numberOr("max_effort_step", {0.0, 1e9, "N m or N", true}, scenario.baton.max_effort_step);
     blend_s = baton.numberOr("blend_s", {0.0, 10.0, "s"}, blend_s);

@@ -1,5 +1,6 @@
 #include "time/baton_arbiter.hpp"
 
+#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 
@@ -10,7 +11,11 @@ using Step = unsigned long long;  // what %llu prints
 }  // namespace
 
 BatonArbiter::BatonArbiter(const ArbiterConfig& config)
-    : config_(config), first_holder_(config.holder), holder_(config.holder), failed_(config.members.size(), 0) {}
+    : config_(config),
+      first_holder_(config.holder),
+      holder_(config.holder),
+      failed_(config.members.size(), 0),
+      failed_at_(config.members.size(), 0) {}
 
 void BatonArbiter::act(Kind kind, const HandoverPlan& plan, const char* format, ...) noexcept {
   if (queue_size_ == kQueue) return;  // taken at every step; a step makes two at most
@@ -33,6 +38,10 @@ std::optional<ArbiterAction> BatonArbiter::takeAction() noexcept {
 
 bool BatonArbiter::hasFailed(int member) const noexcept {
   return member != kBrake && failed_[static_cast<std::size_t>(member)] != 0;
+}
+
+std::uint64_t BatonArbiter::failedAt(int member) const noexcept {
+  return hasFailed(member) ? failed_at_[static_cast<std::size_t>(member)] : 0;
 }
 
 void BatonArbiter::refuseUnknown(std::uint64_t request_id, const char* target, std::uint64_t open_step) noexcept {
@@ -202,6 +211,7 @@ void BatonArbiter::memberFailed(int member, std::uint64_t open_step, const char*
   const auto index = static_cast<std::size_t>(member);
   if (member < 0 || index >= failed_.size() || failed_[index] != 0) return;
   failed_[index] = 1;
+  failed_at_[index] = open_step;
   if (phase_ != Phase::kIdle && member == plan_.incoming) drop(Kind::kRefused, reason);
   if (member == holder_) {
     if (phase_ != Phase::kIdle) drop(Kind::kRefused, reason);
@@ -222,6 +232,7 @@ bool BatonArbiter::isQuiet(std::uint64_t step) const noexcept {
 void BatonArbiter::archive(StateArchive& state) noexcept {
   state(last_plan_id_, holder_, contact_);
   for (char& failed : failed_) state(failed);
+  for (std::uint64_t& step : failed_at_) state(step);
   if (holder_ < kBrake || holder_ >= static_cast<int>(failed_.size())) {
     holder_ = kBrake;
     state.fail();
@@ -240,10 +251,16 @@ void BatonArbiter::rewind() noexcept {
   handover_at_.reset();
   handed_over_by_ = kBrake;
   holder_failed_at_.reset();
+  std::fill(failed_at_.begin(), failed_at_.end(), 0);  // steps are counted anew
   if (hasFailed(holder_)) {
     holder_failed_at_ = 0;
     std::snprintf(failure_.data(), failure_.size(), "it had failed before the reset");
   }
+}
+
+void BatonArbiter::endAt(std::uint64_t step) noexcept {
+  config_.end_step = step;
+  if (phase_ != Phase::kIdle && plan_.at_step >= step) drop(Kind::kRefused, "the run ends before the handover");
 }
 
 void BatonArbiter::runEnded() noexcept {

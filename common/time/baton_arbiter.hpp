@@ -101,6 +101,8 @@ class BatonArbiter {
   [[nodiscard]] bool changedAt(std::uint64_t step) const noexcept { return changed_at_ && *changed_at_ == step; }
   [[nodiscard]] const std::vector<ArbiterMember>& members() const noexcept { return config_.members; }
   [[nodiscard]] bool hasFailed(int member) const noexcept;
+  /// The step that was open when a member that hasFailed() did.
+  [[nodiscard]] std::uint64_t failedAt(int member) const noexcept;
 
   /// Neither a handover nor a failover is under way at this step, so that holder and failures are all there is to
   /// remember.
@@ -112,8 +114,8 @@ class BatonArbiter {
   /// Back to the state before the first step. Who has failed has failed still; a holder that has is followed by the
   /// fallback.
   void rewind() noexcept;
-  /// From now on the run ends at this step.
-  void endAt(std::uint64_t step) noexcept { config_.end_step = step; }
+  /// From now on the run ends at this step. A handover that would take place there or later is refused.
+  void endAt(std::uint64_t step) noexcept;
 
   /// Next action to publish, oldest first.
   [[nodiscard]] std::optional<ArbiterAction> takeAction() noexcept;
@@ -133,6 +135,7 @@ class BatonArbiter {
   std::optional<std::uint64_t> holder_failed_at_;  // until the next step opens
   bool contact_ = false;
   std::vector<char> failed_;
+  std::vector<std::uint64_t> failed_at_;  // open step, of those that have failed
   ReasonText failure_{};
   std::optional<std::uint64_t> changed_at_;
   std::optional<std::uint64_t> handover_at_;  // changed by plan, not by failure

@@ -182,6 +182,12 @@ void swap(const Target& target, const std::string& name, std::uint64_t at_step, 
   }
 }
 
+/// On the wire 0 stands for no step in particular.
+std::uint64_t stepToCome(std::uint64_t step) {
+  if (step == 0) throw UsageError("--at 0: expected a step that is still to come; leave --at out for now");
+  return step;
+}
+
 /// The step at a time of the run.
 std::uint64_t stepAt(CellClient& client, double time_s) {
   const double steps = std::round(time_s * 1e9 / static_cast<double>(simStatus(client).step_ns()));
@@ -274,7 +280,8 @@ void addSimCommands(CLI::App& app, const std::shared_ptr<Target>& target, ExitCo
   };
   const auto addWhen = [=](CLI::App* sub) {
     auto* at = sub->add_option_function<std::uint64_t>(
-        "--at", [request](const std::uint64_t& step) { request->at_step(step); }, "when this step opens, not here");
+        "--at", [request](const std::uint64_t& step) { request->at_step(stepToCome(step)); },
+        "when this step opens, not here");
     sub->add_option("--at-time", *at_s, "the same in seconds of the run")->excludes(at);
   };
   addWhen(add("pause", "hold the run before its next step", msg::SIM_PAUSE));
@@ -321,7 +328,9 @@ void addOperateCommands(CLI::App& app, ExitCode& exit_code) {
   const auto force = std::make_shared<bool>(false);
   CLI::App* swap_command = add("swap", "hand the baton to another controller");
   swap_command->add_option("name", *name, "the controller that takes over")->required();
-  swap_command->add_option("--at", *at_step, "step at which it takes over (default: as soon as the margin allows)");
+  swap_command->add_option_function<std::uint64_t>(
+      "--at", [at_step](const std::uint64_t& step) { *at_step = stepToCome(step); },
+      "step at which it takes over (default: as soon as the margin allows)");
   swap_command->add_flag("--force", *force, "even if the forecast jump is above the scenario's limit");
   swap_command->callback([=, &exit_code] { swap(*target, *name, *at_step, *force, exit_code); });
 

@@ -54,7 +54,7 @@ void printResult(const nlohmann::ordered_json& result) {
   }
   if (!result.at("swaps").empty()) std::printf("handovers   [N m or N, largest over the joints]\n");
   for (const auto& swap : result.at("swaps")) {
-    const bool has_come = swap.at("done").get<bool>() || swap.at("at_step") <= result.at("steps");
+    const bool has_come = swap.at("done").get<bool>() || swap.at("at_step") < result.at("steps");
     if (has_come) printSwap(swap);
   }
   if (const auto& recording = result.at("recording"); !recording.is_null()) {

@@ -73,7 +73,10 @@ Plant::Plant(Service& service)
   service.input(dds::topics::kJointCommand, controllerNames(scenario_),
                 [this](const msg::JointCommand& message, const dds::RawSample& sample) { onCommand(message, sample); });
   service.input(dds::topics::kSwapAck, controllerNames(scenario_),
-                [this](const msg::SwapAck& ack, const dds::RawSample&) { onSwapAck(ack); });
+                [this](const msg::SwapAck& ack, const dds::RawSample& sample) { onSwapAck(ack, sample); });
+  service.input(
+      dds::topics::kControllerStatus, {},
+      [this](const msg::ControllerStatus& status, const dds::RawSample& sample) { onControllerStatus(status, sample); });
   service.input(
       dds::topics::kServiceStatus, servicesBut(kPlantName, scenario_),
       [this](const msg::ServiceStatus& status, const dds::RawSample& sample) { onServiceStatus(status, sample); });
@@ -118,6 +121,10 @@ int Plant::memberCalled(std::string_view name) const {
 std::string Plant::holderText() const {
   const std::string& name = nameOf(arbiter_.holder());
   return name.empty() ? "the brake" : name;
+}
+
+bool Plant::speaksFor(int member, const dds::RawSample& sample) const {
+  return member != kBrake && dds::prefixOf(sample.writer) == speakers_[static_cast<std::size_t>(member)].prefix;
 }
 
 const std::string& Plant::nameOf(int member) const {
@@ -235,6 +242,14 @@ void Plant::memberFailed(int member, const char* reason) {
   if (reset_) resetAcknowledged(nameOf(member));
 }
 
+void Plant::memberReturned(int member) {
+  if (!arbiter_.hasFailed(member)) return;
+  arbiter_.memberReturned(member);
+  if (!arbiter_.hasFailed(member)) {
+    service_.event(msg::SEVERITY_INFO, "returned", nameOf(member) + " answers again and stands by");
+  }
+}
+
 void Plant::keepTorque() {
   effort_ = arm_.holdingEffort(master_.step());
   keeps_torque_ = true;
@@ -339,6 +354,11 @@ void Plant::finish() {
   ended_ns_ = steadyNow();
   arbiter_.runEnded();
   publishSwapActions();
+  if (completed_) {
+    const char* failure = completed_reason_.data();
+    publishDone(*completed_, *failure != '\0' ? failure : "the run ended before its first step did", {}, {});
+    completed_.reset();
+  }
   refuseScheduled("the run has ended");
   if (reset_) dropReset("the run has ended");
   publishStatus();

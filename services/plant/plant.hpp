@@ -36,7 +36,8 @@ class Plant {
   void onCommand(const msg::JointCommand& message, const dds::RawSample& sample);
   void onSimRequest(const msg::SimRequest& request);
   void onSwapRequest(const msg::SwapRequest& request);
-  void onSwapAck(const msg::SwapAck& ack);
+  void onSwapAck(const msg::SwapAck& ack, const dds::RawSample& sample);
+  void onControllerStatus(const msg::ControllerStatus& status, const dds::RawSample& sample);
   void onRewindAck(const msg::RewindAck& ack);
   void onServiceStatus(const msg::ServiceStatus& status, const dds::RawSample& sample);
 
@@ -59,6 +60,7 @@ class Plant {
   void dropReset(const std::string& reason);
   void abort(const std::string& reason);
   void memberFailed(int member, const char* reason);
+  void memberReturned(int member);
   void considerSwap();
   void scheduleSwaps();
   void refuseScheduled(const char* reason);
@@ -74,6 +76,7 @@ class Plant {
 
   [[nodiscard]] std::string namesWaitedFor() const;
   [[nodiscard]] int memberCalled(std::string_view name) const;
+  [[nodiscard]] bool speaksFor(int member, const dds::RawSample& sample) const;
   [[nodiscard]] const std::string& nameOf(int member) const;
   [[nodiscard]] std::string holderText() const;
   [[nodiscard]] bool isRealtime() const { return scenario_.mode == SimMode::kRealtime; }

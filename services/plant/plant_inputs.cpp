@@ -17,7 +17,7 @@ void Plant::onContact(const msg::Contact& message, const dds::RawSample& sample)
 void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sample) {
   if (message.step() != master_.step()) return;
   const int member = memberCalled(message.controller().c_str());
-  if (member == kBrake || dds::prefixOf(sample.writer) != speakers_[static_cast<std::size_t>(member)].prefix) return;
+  if (!speaksFor(member, sample)) return;
   const bool from_holder = member == arbiter_.holder() && !master_.hasCommand();
   const bool from_outgoing = member == arbiter_.outgoingAt(message.step()) && !master_.hasOutgoingCommand();
   if (!from_holder && !from_outgoing) return;
@@ -59,7 +59,7 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
       const Speaker ready{dds::prefixOf(sample.writer), status.pid()};
       if (speaker.pid == 0 || arbiter_.hasFailed(member)) {
         speaker = ready;
-        arbiter_.memberReturned(member);
+        memberReturned(member);
       } else if (speaker.prefix != ready.prefix) {
         successors_[static_cast<std::size_t>(member)] = ready;
       }
@@ -74,7 +74,7 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
     memberFailed(member, status.text().c_str());
     if (Speaker& successor = successors_[static_cast<std::size_t>(member)]; successor.pid != 0) {
       speaker = std::exchange(successor, {});
-      arbiter_.memberReturned(member);
+      memberReturned(member);
     }
     proceed();
   }
@@ -141,6 +141,7 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
           reply.accepted(true);
         } else if (master_.endAt(request.at_step())) {
           arbiter_.endAt(request.at_step());
+          publishSwapActions();
           reply.accepted(true);
         } else {
           refuse("expected a step after " + std::to_string(step) + " and not after the end of the run");
@@ -180,8 +181,18 @@ void Plant::onSwapRequest(const msg::SwapRequest& request) {
   proceed();
 }
 
-void Plant::onSwapAck(const msg::SwapAck& ack) {
+/// Whoever failed and lives goes on computing: it is eligible again once it has answered a later step. As holder it
+/// never returns by itself.
+void Plant::onControllerStatus(const msg::ControllerStatus& status, const dds::RawSample& sample) {
+  const int member = memberCalled(status.name().c_str());
+  if (master_.isOver() || !speaksFor(member, sample) || !arbiter_.hasFailed(member)) return;
+  const bool stands_by = status.state() == msg::CONTROLLER_STANDBY || status.state() == msg::CONTROLLER_COLD;
+  if (stands_by && status.step() > arbiter_.failedAt(member)) memberReturned(member);
+}
+
+void Plant::onSwapAck(const msg::SwapAck& ack, const dds::RawSample& sample) {
   const int member = memberCalled(ack.controller().c_str());
+  if (!speaksFor(member, sample)) return;
   if (ack.phase() == msg::SWAP_PREPARE) {
     JointVector effort;
     const bool finite = readSequence(ack.effort(), scenario_.robot.size(), effort);

@@ -56,7 +56,7 @@ ExitCode Supervisor::run() {
   // A run that was reset is its last take.
   std::erase_if(swaps_, [&](const msg::SwapOutcome& swap) { return swap.take() != sim_.take(); });
   const bool was_refused = std::any_of(swaps_.begin(), swaps_.end(), [&](const msg::SwapOutcome& swap) {
-    return swap.request_id() == 0 && !swap.done() && swap.at_step() <= sim_.step();  // else the run ended before
+    return swap.request_id() == 0 && !swap.done() && swap.at_step() < sim_.step();  // else the run ended before
   });
   if (was_refused) fail(ExitCode::kFailed, "a handover that the scenario plans was refused");
   for (const msg::SwapOutcome& swap : swaps_) {

@@ -151,7 +151,7 @@ TEST(ScenarioFile, NeedsNoMoreThanARobotAStepAMotionAndAController) {
   EXPECT_EQ(s.end_step, 0u);
   EXPECT_EQ(s.mode, defaults.mode);
   EXPECT_EQ(s.rate, 0.0);
-  EXPECT_EQ(s.max_missed_steps, defaults.max_missed_steps);
+  EXPECT_EQ(s.max_missed_steps, 19u);  // and one more: 20 ms
   EXPECT_EQ(s.late_policy, defaults.late_policy);
   EXPECT_EQ(s.late_after_s, defaults.late_after_s);
   EXPECT_EQ(s.coupling, defaults.coupling);
@@ -202,6 +202,22 @@ TEST(ScenarioFile, PacesToAFactorOfRealTimeAndInRealtimeToOne) {
     EXPECT_EQ(message,
               "trial.yaml:8: rate: expected 1, the only rate of mode realtime, found '" + std::string(rate) + "'");
   }
+}
+
+TEST(ScenarioFile, RealtimeGivesUpASilentHolderWithin20MsAndHandsOverWithin5) {
+  const std::string realtime = replaced(replaced(kTrial, "mode: lockstep", "mode: realtime"), "rate: max\n", "");
+  const std::string defaults = replaced(replaced(realtime, "max_missed_steps: 7\n", ""), "margin_steps: 6, ", "");
+  EXPECT_EQ(parse(defaults).baton.margin_steps, 3u);
+  EXPECT_EQ(parse(realtime).baton.margin_steps, 6u);
+  const auto missed = [&](const std::string& step_s) {
+    const std::string text = replaced(defaults, section("swaps:", "baton:"), "");
+    return parse(replaced(text, "step_s: 0.0005", "step_s: " + step_s)).max_missed_steps;
+  };
+  EXPECT_EQ(missed("0.0005"), 20u);
+  EXPECT_EQ(missed("0.001"), 19u);
+  EXPECT_EQ(missed("0.004"), 4u);
+  EXPECT_EQ(missed("0.01"), 1u);
+  EXPECT_EQ(missed("0.1"), 1u) << "one is always forgiven";
 }
 
 TEST(ScenarioFile, LetsTheBatonComeBackAndSwapsFollowAsCloselyAsTheyMay) {

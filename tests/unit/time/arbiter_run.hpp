@@ -87,16 +87,15 @@ class ArbiterRun {
   [[nodiscard]] const HandoverPlan& lastPlan() const { return actions.back().plan; }
   [[nodiscard]] std::string lastReason() const { return actions.back().reason.data(); }
 
+  void drain() {
+    while (const std::optional<ArbiterAction> action = arbiter.takeAction()) actions.push_back(*action);
+  }
+
   BatonArbiter arbiter;
   std::uint64_t step = 0;
   JointVector effort = efforts(0.0);  // the holder's
   bool in_contact = false;
   std::vector<ArbiterAction> actions;
-
- private:
-  void drain() {
-    while (const std::optional<ArbiterAction> action = arbiter.takeAction()) actions.push_back(*action);
-  }
 };
 
 }  // namespace baton::test

@@ -60,6 +60,25 @@ TEST(Failover, TheBrakeIsTheLastResort) {
   EXPECT_EQ(run.next(), kBrake) << "the brake cannot fail";
 }
 
+TEST(Failover, RemembersWhenWhoFailedUntilItReturnsAndThenItOnlyStandsBy) {
+  ArbiterRun run;
+  run.runTo(7);
+  run.fail(kFirst);
+  EXPECT_EQ(run.arbiter.failedAt(kFirst), 7u);
+  run.arbiter.memberReturned(kFirst);
+  EXPECT_TRUE(run.arbiter.hasFailed(kFirst)) << "the open step is still its own";
+  EXPECT_EQ(run.next(), kSpare);
+  run.arbiter.memberReturned(kFirst);
+  EXPECT_FALSE(run.arbiter.hasFailed(kFirst));
+  EXPECT_EQ(run.next(), kSpare) << "it does not take the baton by itself";
+  run.handOverUpTo(kFirst);
+  EXPECT_EQ(run.next(), kFirst);
+  run.fail(kFirst);
+  run.arbiter.rewind();
+  EXPECT_TRUE(run.arbiter.hasFailed(kFirst));
+  EXPECT_EQ(run.arbiter.failedAt(kFirst), 0u) << "steps are counted anew";
+}
+
 TEST(Failover, FromTheBrakeAFitControllerCanTakeOver) {
   ArbiterRun run;
   run.fail(kFirst);

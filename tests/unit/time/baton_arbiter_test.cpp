@@ -263,6 +263,29 @@ TEST(BatonArbiter, RefusesAStepTheRunDoesNotReach) {
   expectRefusedBeforeAPlan(late, "not before the end of the run");
 }
 
+TEST(BatonArbiter, AnEndThatIsBroughtForwardCancelsThePlanBehindIt) {
+  for (const bool committed : {false, true}) {
+    ArbiterRun run;
+    run.request(kSecond, 20);
+    if (committed) {
+      run.forecast(1, kSecond, 0.0);
+      run.runTo(20 - kMargin + 1);
+      run.commitAcknowledgedBy(kSecond);
+      run.commitAcknowledgedBy(kFirst);
+      ASSERT_EQ(run.actions.back().kind, Kind::kCommit);
+    }
+    run.arbiter.endAt(21);
+    run.drain();
+    EXPECT_NE(run.actions.back().kind, Kind::kRefused) << "step 20 is still a step of the run";
+    run.arbiter.endAt(20);
+    run.drain();
+    expectRefusedAfterAPlan(run, "the run ends before the handover");
+    run.runTo(20);
+    EXPECT_EQ(run.arbiter.holder(), kFirst);
+    EXPECT_FALSE(run.arbiter.changedAt(20));
+  }
+}
+
 /// A request to `target` whose forecast is `effort`, up to the decision.
 ArbiterRun decided(int target, const JointVector& effort, bool force = false, bool in_contact = false,
                    bool ready = true, const char* reason = "") {
