@@ -41,6 +41,12 @@ JointVector Arm::brakeEffort() const {
   return tau;
 }
 
+JointVector Arm::residual(std::uint64_t step) const {
+  JointVector tau = JointVector::Zero(model_.size());
+  blend_.add(step, tau);
+  return tau;
+}
+
 JointVector Arm::blended(std::uint64_t step, const JointVector& effort) const {
   JointVector tau = effort;
   blend_.add(step, tau);

@@ -21,11 +21,10 @@ inline constexpr Coupling kCouplings[] = {Coupling::kDerivatives, Coupling::kHel
 [[nodiscard]] const char* toString(Coupling coupling);  // as scenarios call it
 
 struct ArmConfig {
-  double step_s = 0.0;            // length of a control step
-  int substeps = 1;               // of the integration within it
-  std::uint64_t blend_steps = 0;  // over which the difference between two torques fades
-  JointVector start_q;            // n entries [rad or m]
-  JointVector start_qd;           // n entries [rad/s or m/s]
+  double step_s = 0.0;   // length of a control step
+  int substeps = 1;      // of the integration within it
+  JointVector start_q;   // n entries [rad or m]
+  JointVector start_qd;  // n entries [rad/s or m/s]
   Coupling coupling = Coupling::kDerivatives;
 };
 
@@ -43,9 +42,12 @@ class Arm {
   /// tau = g(q) - kBrakeRate B(q) qd. Without friction and contact kinetic energy falls as exp(-2 kBrakeRate t).
   [[nodiscard]] JointVector brakeEffort() const;
 
-  /// The difference r0 between what the joints would have felt and what they are given from step K on; it fades away.
-  void blendFrom(std::uint64_t K, const JointVector& r0) { blend_.start(K, config_.blend_steps, r0); }
-  /// `effort` plus what is left of the blend at this step.
+  /// The difference r0 between what the joints would have felt and what they are given from step K on; it fades away
+  /// within so many steps, 0 for at once.
+  void blendFrom(std::uint64_t K, std::uint64_t steps, const JointVector& r0) { blend_.start(K, steps, r0); }
+  /// What is left of the blend at this step.
+  [[nodiscard]] JointVector residual(std::uint64_t step) const;
+  /// `effort` plus that.
   [[nodiscard]] JointVector blended(std::uint64_t step, const JointVector& effort) const;
 
   /// The effort that, blended at this step, keeps the joints' present torque.

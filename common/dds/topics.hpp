@@ -48,6 +48,8 @@ inline constexpr Topic<msg::SwapRequest>      kSwapRequest     {"swap_request", 
 inline constexpr Topic<msg::SwapPlan>         kSwapPlan        {"swap_plan",         "baton::msg::SwapPlan",         Profile::kEvent};
 inline constexpr Topic<msg::SwapAck>          kSwapAck         {"swap_ack",          "baton::msg::SwapAck",          Profile::kEvent};
 inline constexpr Topic<msg::SwapOutcome>      kSwapOutcome     {"swap_outcome",      "baton::msg::SwapOutcome",      Profile::kEvent};
+inline constexpr Topic<msg::SwapReport>       kSwapReport      {"swap_report",       "baton::msg::SwapReport",       Profile::kEvent};
+inline constexpr Topic<msg::BatonStatus>      kBatonStatus     {"baton_status",      "baton::msg::BatonStatus",      Profile::kStatus};
 inline constexpr Topic<msg::ControllerStatus> kControllerStatus{"controller_status", "baton::msg::ControllerStatus", Profile::kStatus};
 inline constexpr Topic<msg::ParameterStatus>  kParameterStatus {"parameter_status",  "baton::msg::ParameterStatus",  Profile::kStatus};
 inline constexpr Topic<msg::ServiceStatus>    kServiceStatus   {"service_status",    "baton::msg::ServiceStatus",    Profile::kStatus};

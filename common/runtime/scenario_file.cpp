@@ -20,9 +20,6 @@
 namespace baton {
 namespace {
 
-constexpr std::size_t kMaxSwaps = 10'000;
-constexpr std::size_t kMaxControllers = 16;
-
 const NumberRange kJointVelocity{-1e4, 1e4, "rad/s or m/s"};
 const NumberRange kEffortLimit{0.0, 1e9, "N m or N", true};
 
@@ -33,20 +30,6 @@ std::int64_t readStep(const YamlNode& node) {
   constexpr double kRounding_ns = 1e-3;
   if (std::abs(ns - std::round(ns)) > kRounding_ns) node.refuse("a whole number of nanoseconds");
   return std::llround(ns);
-}
-
-/// A time as a count of steps. One that falls between two steps is refused rather than moved.
-std::uint64_t readSteps(const YamlNode& node, const Scenario& scenario) {
-  const double ns = node.number(kTime) * 1e9;
-  const auto step_ns = static_cast<double>(scenario.step_ns);
-  const double steps = std::round(ns / step_ns);
-  constexpr double kRounding_ns = 0.5;            // a double of up to kMaxTime_s is finer
-  const bool is_lost = steps == 0.0 && ns > 0.0;  // 0 has a meaning of its own
-  if (is_lost || std::abs(ns - steps * step_ns) > kRounding_ns) {
-    node.refuse("a whole number of steps of " + shownNumber(scenario.stepSeconds()) + " s (the nearest is " +
-                shownNumber(steps * step_ns * 1e-9) + ")");
-  }
-  return static_cast<std::uint64_t>(steps);
 }
 
 double readRate(const YamlMap& map, SimMode mode) {
@@ -211,71 +194,6 @@ ControllerConfig readController(const YamlNode& node, const Scenario& scenario) 
   return controller;
 }
 
-/// The name of a controller of this scenario.
-std::string readMember(const YamlNode& node, const Scenario& scenario) {
-  std::string name = node.text();
-  at(node, [&] { (void)scenario.controller(name); });
-  return name;
-}
-
-// --- handing over the baton
-
-void readBaton(const YamlMap& map, Scenario& scenario) {
-  double blend_s = 0.1;
-  // At 1 kHz a request then takes effect within 5 ms: it waits for the next step, the margin, and no more.
-  if (scenario.mode == SimMode::kRealtime) scenario.baton.margin_steps = 3;
-  if (const auto node = map.find("baton")) {
-    const YamlMap baton = node->map({"margin_steps", "blend_s", "max_effort_step", "fallback"});
-    BatonConfig& config = scenario.baton;
-    config.margin_steps =
-        static_cast<std::uint64_t>(baton.integerOr("margin_steps", 1, 1000, config.margin_steps));
-    config.max_effort_step =
-        baton.numberOr("max_effort_step", {0.0, 1e9, "N m or N", true}, scenario.baton.max_effort_step);
-    blend_s = baton.numberOr("blend_s", {0.0, 10.0, "s"}, blend_s);
-    if (const auto fallback = baton.find("fallback")) {
-      for (const YamlNode& item : fallback->list(0, kMaxControllers)) {
-        const std::string name = readMember(item, scenario);
-        if (std::find(config.fallback.begin(), config.fallback.end(), name) != config.fallback.end()) {
-          item.refuse("each controller once");
-        }
-        config.fallback.push_back(name);
-      }
-    }
-  }
-  // The length of a fade is not an instant of the run: the nearest whole number of steps will do.
-  scenario.baton.blend_steps = static_cast<std::uint64_t>(std::llround(blend_s / scenario.stepSeconds()));
-}
-
-void readSwaps(const YamlMap& map, Scenario& scenario) {
-  const auto node = map.find("swaps");
-  if (!node) return;
-  const BatonConfig& baton = scenario.baton;
-  const std::uint64_t apart = std::max(2 * baton.margin_steps + 3, baton.blend_steps);
-  const auto in_words = [&](std::uint64_t step) {
-    return "step " + std::to_string(step) + " (" + shownNumber(static_cast<double>(step) * scenario.stepSeconds()) +
-           " s)";
-  };
-  std::string holder = scenario.active;
-  for (const YamlNode& item : node->list(0, kMaxSwaps)) {
-    const YamlMap map_of_swap = item.map({"at_s", "to"});
-    const YamlNode at_s = map_of_swap["at_s"];
-    const PlannedSwap swap{readSteps(at_s, scenario), readMember(map_of_swap["to"], scenario)};
-    if (scenario.swaps.empty()) {
-      const std::uint64_t earliest = baton.margin_steps + 2;
-      if (swap.at_step < earliest) at_s.refuse("a time not before " + in_words(earliest) + ", margin_steps + 2");
-    } else if (const std::uint64_t before = scenario.swaps.back().at_step; swap.at_step < before + apart) {
-      at_s.refuse("a time not before " + in_words(before + apart) +
-                  ": the swap before must be over, which takes its blend and more than 2 margin_steps + 2");
-    }
-    if (scenario.end_step > 0 && swap.at_step >= scenario.end_step) {
-      at_s.refuse("a time before the end of the run, " + in_words(scenario.end_step));
-    }
-    if (swap.to == holder) map_of_swap["to"].refuse("a controller that does not hold the baton already");
-    holder = swap.to;
-    scenario.swaps.push_back(swap);
-  }
-}
-
 RecordingConfig readRecording(const YamlMap& map, const Scenario& scenario) {
   RecordingConfig recording;
   constexpr double kCheckpoint_s = 1.0;
@@ -346,7 +264,6 @@ Scenario readScenario(const std::string& file, const std::string& text,
 ArmConfig Scenario::armConfig() const {
   return {.step_s = stepSeconds(),
           .substeps = substeps,
-          .blend_steps = baton.blend_steps,
           .start_q = start_q,
           .start_qd = start_qd,
           .coupling = coupling};

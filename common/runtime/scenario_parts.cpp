@@ -144,6 +144,25 @@ JointVector readJointsOrOne(const YamlNode& node, const NumberRange& range, int 
   return node.isList() ? readJoints(node, range, n) : JointVector(JointVector::Constant(n, node.number(range)));
 }
 
+std::uint64_t readSteps(const YamlNode& node, const Scenario& scenario) {
+  const double ns = node.number(kTime) * 1e9;
+  const auto step_ns = static_cast<double>(scenario.step_ns);
+  const double steps = std::round(ns / step_ns);
+  constexpr double kRounding_ns = 0.5;            // a double of up to kMaxTime_s is finer
+  const bool is_lost = steps == 0.0 && ns > 0.0;  // 0 has a meaning of its own
+  if (is_lost || std::abs(ns - steps * step_ns) > kRounding_ns) {
+    node.refuse("a whole number of steps of " + shownNumber(scenario.stepSeconds()) + " s (the nearest is " +
+                shownNumber(steps * step_ns * 1e-9) + ")");
+  }
+  return static_cast<std::uint64_t>(steps);
+}
+
+std::string readMember(const YamlNode& node, const Scenario& scenario) {
+  std::string name = node.text();
+  at(node, [&] { (void)scenario.controller(name); });
+  return name;
+}
+
 std::vector<PlaneSpec> readWalls(const YamlNode& node) {
   std::vector<PlaneSpec> walls;
   for (const YamlNode& wall : node.list(1, kMaxWalls)) walls.push_back(readWall(wall));

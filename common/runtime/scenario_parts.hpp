@@ -8,12 +8,14 @@
 #include "base/error.hpp"
 #include "environment/plane.hpp"
 #include "robot/model.hpp"
+#include "runtime/scenario.hpp"
 #include "runtime/yaml.hpp"
 #include "trajectory/trajectory.hpp"
 
 namespace baton {
 
 inline constexpr double kMaxTime_s = 1e6;  // longer runs are open-ended
+inline constexpr std::size_t kMaxControllers = 16;
 
 // Wide enough for any experiment, narrow enough to catch a slip of units or of a decimal point.
 inline const NumberRange kTime{0.0, kMaxTime_s, "s"};
@@ -34,6 +36,16 @@ decltype(auto) at(const YamlNode& node, const Read& read) {
 [[nodiscard]] JointVector readJoints(const YamlNode& node, const NumberRange& range, int n);
 /// The same, or a single number that stands for all joints.
 [[nodiscard]] JointVector readJointsOrOne(const YamlNode& node, const NumberRange& range, int n);
+
+/// A time as a count of steps. One that falls between two steps is refused rather than moved.
+[[nodiscard]] std::uint64_t readSteps(const YamlNode& node, const Scenario& scenario);
+/// The name of a controller of this scenario.
+[[nodiscard]] std::string readMember(const YamlNode& node, const Scenario& scenario);
+
+/// The baton's settings, and the handovers that are planned: both from the scenario's own map, into `scenario`, which
+/// has everything else already.
+void readBaton(const YamlMap& map, Scenario& scenario);
+void readSwaps(const YamlMap& map, Scenario& scenario);
 
 /// The walls of an environment.
 [[nodiscard]] std::vector<PlaneSpec> readWalls(const YamlNode& node);

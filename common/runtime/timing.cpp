@@ -48,7 +48,8 @@ Json toJson(const msg::TimingStatus& timing) {
   return {{"period_us", toJson(timing.period())},
           {"jitter_us", toJson(timing.jitter())},
           {"command_age_steps", toJson(timing.command_age())},
-          {"missed", timing.missed_steps()}};
+          {"missed", timing.missed_steps()},
+          {"handover_us", toJson(timing.handover())}};
 }
 
 }  // namespace baton

@@ -12,8 +12,8 @@ namespace baton {
 [[nodiscard]] msg::TimeSpread timeSpread(const Histogram& times_ns);
 [[nodiscard]] msg::StepSpread stepSpread(const Histogram& steps);
 
-/// {"period_us": {"count", "mean", "p50", "p99", "p999", "max"}, "jitter_us": ..., "command_age_steps": ..., "missed"};
-/// null stands for what has no values, as jitter and age have in lockstep.
+/// {"period_us": {"count", "mean", "p50", "p99", "p999", "max"}, "jitter_us": ..., "command_age_steps": ..., "missed",
+/// "handover_us": ...}; null stands for what has no values, as jitter and age have in lockstep.
 [[nodiscard]] nlohmann::ordered_json toJson(const msg::TimingStatus& timing);
 
 }  // namespace baton

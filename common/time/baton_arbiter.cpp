@@ -52,56 +52,62 @@ void BatonArbiter::refuseUnknown(std::uint64_t request_id, const char* target, s
   act(Kind::kRefused, plan, "no controller is called %.40s; see the controllers command", target);
 }
 
-void BatonArbiter::request(const HandoverRequest& request, std::uint64_t open_step) noexcept {
+HandoverPlan BatonArbiter::planFor(const HandoverRequest& request, std::uint64_t open_step) const noexcept {
   HandoverPlan plan;
   plan.request_id = request.request_id;
   plan.outgoing = holder_;
   plan.incoming = request.target;
   plan.decided_at_step = open_step;
+  plan.at_step = request.at_step == 0 ? open_step + 1 + config_.margin_steps : request.at_step;
   plan.force = request.force;
-  const std::uint64_t earliest = open_step + 1 + config_.margin_steps;
-  plan.at_step = request.at_step == 0 ? earliest : request.at_step;
+  plan.hard = request.hard;
+  plan.blend_steps = request.hard ? 0 : request.blend_steps.value_or(config_.blend_steps);
+  return plan;
+}
 
-  const auto target = static_cast<std::size_t>(request.target);
-  if (request.target < 0 || target >= config_.members.size()) {
-    return act(Kind::kRefused, plan, "no such controller");
+ReasonText BatonArbiter::objectionTo(const HandoverPlan& plan, std::uint64_t open_step) const noexcept {
+  ReasonText why{};
+  const std::uint64_t earliest = open_step + 1 + config_.margin_steps;
+  const auto target = static_cast<std::size_t>(plan.incoming);
+  if (plan.incoming < 0 || target >= config_.members.size()) {
+    write(why, "no such controller");
+    return why;
   }
   const char* name = config_.members[target].name.c_str();
   if (phase_ != Phase::kIdle) {
-    const char* busy = config_.members[static_cast<std::size_t>(plan_.incoming)].name.c_str();
-    return act(Kind::kRefused, plan, "a handover to %s at step %llu is under way; ask again after it", busy,
-               Step{plan_.at_step});
+    write(why, "a handover to %s at step %llu is under way; ask again after it",
+          config_.members[static_cast<std::size_t>(plan_.incoming)].name.c_str(), Step{plan_.at_step});
+  } else if (holder_failed_at_) {
+    write(why, "the holder has failed and step %llu goes to a fallback; ask again after it", Step{open_step + 1});
+  } else if (plan.incoming == holder_) {
+    write(why, "%s holds the baton already", name);
+  } else if (failed_[target] != 0) {
+    write(why, "%s has failed", name);
+  } else if (plan.at_step < earliest) {
+    write(why, "step %llu is too near: step %llu is open and the margin is %llu, so %llu is the first possible",
+          Step{plan.at_step}, Step{open_step}, Step{config_.margin_steps}, Step{earliest});
+  } else if (config_.end_step > 0 && plan.at_step >= config_.end_step) {
+    write(why, "step %llu is not before the end of the run at step %llu", Step{plan.at_step}, Step{config_.end_step});
   }
-  if (holder_failed_at_) {
-    return act(Kind::kRefused, plan, "the holder has failed and step %llu goes to a fallback; ask again after it",
-               Step{open_step + 1});
-  }
-  if (request.target == holder_) return act(Kind::kRefused, plan, "%s holds the baton already", name);
-  if (failed_[target] != 0) return act(Kind::kRefused, plan, "%s has failed", name);
-  if (plan.at_step < earliest) {
-    return act(Kind::kRefused, plan,
-               "step %llu is too near: step %llu is open and the margin is %llu, so %llu is the first possible",
-               Step{plan.at_step}, Step{open_step}, Step{config_.margin_steps}, Step{earliest});
-  }
-  if (config_.end_step > 0 && plan.at_step >= config_.end_step) {
-    return act(Kind::kRefused, plan, "step %llu is not before the end of the run at step %llu", Step{plan.at_step},
-               Step{config_.end_step});
+  return why;
+}
+
+void BatonArbiter::request(const HandoverRequest& request, std::uint64_t open_step) noexcept {
+  HandoverPlan plan = planFor(request, open_step);
+  if (const ReasonText why = objectionTo(plan, open_step); why.front() != '\0') {
+    return act(Kind::kRefused, plan, "%s", why.data());
   }
   plan.plan_id = ++last_plan_id_;
   plan.forecast_step = plan.at_step - config_.margin_steps;
   plan_ = plan;
   phase_ = Phase::kPreparing;
-  forecast_here_ = incoming_committed_ = outgoing_committed_ = false;
+  forecast_.reset();
+  incoming_committed_ = outgoing_committed_ = false;
   act(Kind::kPrepare, plan_, "%s", "");
 }
 
-void BatonArbiter::prepareAcknowledged(std::uint64_t plan_id, int member, bool ready, const JointVector& effort,
-                                       const char* reason) noexcept {
-  if (phase_ != Phase::kPreparing || plan_id != plan_.plan_id || member != plan_.incoming) return;
-  forecast_here_ = true;
-  forecast_ready_ = ready;
-  forecast_ = effort;
-  std::snprintf(not_ready_.data(), not_ready_.size(), "%s", reason);
+void BatonArbiter::prepareAcknowledged(std::uint64_t plan_id, int member, const Forecast& forecast) noexcept {
+  if (phase_ == Phase::kPreparing && plan_id == plan_.plan_id && member == plan_.incoming) forecast_ = forecast;
 }
 
 void BatonArbiter::commitAcknowledged(std::uint64_t plan_id, int member) noexcept {
@@ -120,47 +126,24 @@ void BatonArbiter::consider(std::uint64_t open_step, const JointVector& holder_e
   contact_ = in_contact;
   if (phase_ != Phase::kPreparing || open_step < plan_.forecast_step) return;
   const ArbiterMember& incoming = config_.members[static_cast<std::size_t>(plan_.incoming)];
-  ReasonText why{};
-  const auto refuse = [&] { drop(Kind::kRefused, why.data()); };
-  if (!forecast_here_) {
-    if (open_step == plan_.forecast_step) return;  // it still may come; in lockstep it will
-    std::snprintf(why.data(), why.size(), "%s gave no forecast for step %llu in time", incoming.name.c_str(),
-                  Step{plan_.forecast_step});
-    return refuse();
+  const bool is_late = open_step != plan_.forecast_step;  // realtime only: there is nothing left to compare with
+  if (!forecast_ && !is_late) return;                     // it still may come; in lockstep it will
+  if (is_late) {
+    ReasonText why{};
+    write(why, forecast_ ? "%s forecast step %llu too late" : "%s gave no forecast for step %llu in time",
+          incoming.name.c_str(), Step{plan_.forecast_step});
+    return drop(Kind::kRefused, why.data());
   }
-  if (open_step != plan_.forecast_step) {
-    // Realtime only: it came after its step, so there is nothing to compare it with.
-    std::snprintf(why.data(), why.size(), "%s forecast step %llu too late", incoming.name.c_str(),
-                  Step{plan_.forecast_step});
-    return refuse();
-  }
-  if (!forecast_ready_) {
-    std::snprintf(why.data(), why.size(), "%s is not ready: %.120s", incoming.name.c_str(), not_ready_.data());
-    return refuse();
-  }
-  if (incoming.requires_contact && !in_contact) {
-    std::snprintf(why.data(), why.size(), "%s controls force and the tip touches nothing", incoming.name.c_str());
-    return refuse();
-  }
-  if (forecast_.size() != holder_effort.size() || !forecast_.allFinite()) {
-    std::snprintf(why.data(), why.size(), "%s forecasts %d efforts, not %d finite ones", incoming.name.c_str(),
-                  static_cast<int>(forecast_.size()), static_cast<int>(holder_effort.size()));
-    return refuse();
-  }
-  Eigen::Index joint = 0;
-  const double jump = (forecast_ - holder_effort).cwiseAbs().maxCoeff(&joint);
-  if (jump > config_.max_effort_step && !plan_.force) {
-    std::snprintf(why.data(), why.size(),
-                  "%s would change joint %d by %.4g, above the limit of %.4g; force it to insist",
-                  incoming.name.c_str(), static_cast<int>(joint) + 1, jump, config_.max_effort_step);
-    return refuse();
-  }
+  const Verdict verdict =
+      judge(incoming, *forecast_, {holder_effort, in_contact}, config_.max_effort_step, plan_.force);
+  plan_.forecast_effort_step = verdict.effort_step;
+  if (!verdict.isFeasible()) return drop(Kind::kRefused, verdict.objection.data());
   phase_ = Phase::kCommitted;
   act(Kind::kCommit, plan_, "%s", "");
 }
 
 int BatonArbiter::awaitedMember(std::uint64_t open_step) const noexcept {
-  if (phase_ == Phase::kPreparing && open_step >= plan_.forecast_step && !forecast_here_) return plan_.incoming;
+  if (phase_ == Phase::kPreparing && open_step >= plan_.forecast_step && !forecast_) return plan_.incoming;
   if (phase_ == Phase::kCommitted && open_step + 1 >= plan_.at_step) {
     if (!incoming_committed_) return plan_.incoming;
     if (!outgoing_committed_ && !hasFailed(plan_.outgoing)) return plan_.outgoing;
@@ -176,6 +159,7 @@ int BatonArbiter::open(std::uint64_t step) noexcept {
     plan.outgoing = holder_;
     plan.decided_at_step = *holder_failed_at_;
     plan.at_step = step;
+    plan.blend_steps = config_.blend_steps;
     holder_ = kBrake;
     for (const int candidate : config_.fallback) {
       const ArbiterMember& member = config_.members[static_cast<std::size_t>(candidate)];

@@ -14,28 +14,22 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "base/state_archive.hpp"
 #include "base/types.hpp"
+#include "time/forecast.hpp"
 
 namespace baton {
 
 inline constexpr int kBrake = -1;
-
-using ReasonText = std::array<char, 200>;  // zero-terminated
-
-struct ArbiterMember {
-  std::string name;
-  bool requires_contact = false;  // not fit to take over out of contact
-};
 
 struct ArbiterConfig {
   std::vector<ArbiterMember> members;
   int holder = kBrake;        // at step 0
   std::vector<int> fallback;  // who takes over from a holder that fails, in order
   std::uint64_t margin_steps = 5;
+  std::uint64_t blend_steps = 0;  // unless a request says otherwise
   double max_effort_step = 50.0;  // forecast above this is refused unless forced
   std::uint64_t end_step = 0;     // 0: open end
 };
@@ -45,6 +39,8 @@ struct HandoverRequest {
   int target = kBrake;
   std::uint64_t at_step = 0;  // 0: as soon as the margin allows
   bool force = false;
+  bool hard = false;                         // no help: no blend, and the incoming law starts anew
+  std::optional<std::uint64_t> blend_steps;  // as configured when not given; none when hard
 };
 
 struct HandoverPlan {
@@ -56,6 +52,9 @@ struct HandoverPlan {
   std::uint64_t forecast_step = 0;
   std::uint64_t at_step = 0;
   bool force = false;
+  bool hard = false;
+  std::uint64_t blend_steps = 0;
+  JointVector forecast_effort_step;  // forecast minus the holder's effort, once compared
 };
 
 /// What the arbiter wants published, in this order.
@@ -73,8 +72,7 @@ class BatonArbiter {
   void request(const HandoverRequest& request, std::uint64_t open_step) noexcept;
   /// A request that names nobody this run knows.
   void refuseUnknown(std::uint64_t request_id, const char* target, std::uint64_t open_step) noexcept;
-  void prepareAcknowledged(std::uint64_t plan_id, int member, bool ready, const JointVector& effort,
-                           const char* reason) noexcept;
+  void prepareAcknowledged(std::uint64_t plan_id, int member, const Forecast& forecast) noexcept;
   void commitAcknowledged(std::uint64_t plan_id, int member) noexcept;
   /// The member is gone or misbehaves at `open_step`. If it holds the baton, the next step belongs to the fallback.
   void memberFailed(int member, std::uint64_t open_step, const char* reason) noexcept;
@@ -83,6 +81,11 @@ class BatonArbiter {
   void memberReturned(int member) noexcept;
   /// The run ends: a handover under way is refused.
   void runEnded() noexcept;
+
+  /// The plan that a request would make now, without an id, and what speaks against it before anybody is asked; empty
+  /// when nothing does.
+  [[nodiscard]] HandoverPlan planFor(const HandoverRequest& request, std::uint64_t open_step) const noexcept;
+  [[nodiscard]] ReasonText objectionTo(const HandoverPlan& plan, std::uint64_t open_step) const noexcept;
 
   // --- the run
   /// The open step's inputs are complete: decides on a plan whose forecast step this is.
@@ -100,6 +103,9 @@ class BatonArbiter {
   /// Whether the holder changed at this step, by handover or failover.
   [[nodiscard]] bool changedAt(std::uint64_t step) const noexcept { return changed_at_ && *changed_at_ == step; }
   [[nodiscard]] const std::vector<ArbiterMember>& members() const noexcept { return config_.members; }
+  [[nodiscard]] double maxEffortStep() const noexcept { return config_.max_effort_step; }
+  /// The handover under way, nullptr when there is none.
+  [[nodiscard]] const HandoverPlan* planUnderWay() const noexcept { return phase_ == Phase::kIdle ? nullptr : &plan_; }
   [[nodiscard]] bool hasFailed(int member) const noexcept;
   /// The step that was open when a member that hasFailed() did.
   [[nodiscard]] std::uint64_t failedAt(int member) const noexcept;
@@ -141,10 +147,7 @@ class BatonArbiter {
   std::optional<std::uint64_t> handover_at_;  // changed by plan, not by failure
   int handed_over_by_ = kBrake;               // plan_ may be the next one by then
   // acknowledgements of the current plan
-  bool forecast_here_ = false;
-  bool forecast_ready_ = false;
-  JointVector forecast_;
-  ReasonText not_ready_{};
+  std::optional<Forecast> forecast_;
   bool incoming_committed_ = false;
   bool outgoing_committed_ = false;
   // a small ring of actions

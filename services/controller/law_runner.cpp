@@ -35,6 +35,9 @@ LawRunner::LawRunner(Service& service)
   input_.dt_s = service.scenario().stepSeconds();
   prepare(message_);
   ack_.effort().reserve(kMaxJoints);
+  ack_.controller(config_.name);
+  owed_.reserve(kMaxOwed);
+  law_state_.resize(msg::MAX_CHECKPOINT);
   law_->reset();
   checkpoint_out_.restore(*this);
   service.input(dds::topics::kPlantState, {kPlantName},
@@ -106,11 +109,12 @@ void LawRunner::compute(std::uint64_t step) {
     // From the second step with the baton on, a law's state goes on by itself; before, it is asked anew at every step
     // what it would do if it received the baton there. At the start of a run there is nothing to take over.
     const bool continues = last_command || (holds && (active_ || step == 0));
-    evaluate(step, continues);
+    const bool forgets = holds && fresh_step_ == step;
+    evaluate(step, forgets ? Start::kForgets : continues ? Start::kContinues : Start::kTakesOver);
     active_ = holds;
     publish(step, holds || last_command);
   }
-  if (forecast_plan_ && step >= forecast_step_) answerForecast();
+  answerForecasts();
   service_.stepDone(step);
 }
 
@@ -123,8 +127,9 @@ void LawRunner::forget() {
   law_->reset();
   inputs_ = StepInputs(info_.uses_force ? 3 : 2);
   active_ = failing_ = false;
-  forecast_plan_.reset();
+  owed_.clear();
   last_command_step_.reset();
+  fresh_step_.reset();
   for (JointVector& effort : history_) effort.resize(0);
 }
 
@@ -138,12 +143,13 @@ void LawRunner::archive(StateArchive& state) {
   law_->archive(state);
 }
 
-void LawRunner::evaluate(std::uint64_t step, bool continues) {
+void LawRunner::evaluate(std::uint64_t step, Start start) {
   const std::size_t slot = StepInputs::slot(step);
   input_.state = states_[slot];
   input_.reference = references_[slot];
   input_.contact = contacts_[slot];
-  if (!continues) law_->handover(input_);
+  if (start == Start::kTakesOver) law_->handover(input_);
+  if (start == Start::kForgets) law_->reset();
   last_status_ = law_->step(input_, effort_);
   if (last_status_ == LawStatus::kOk) {
     history_[slot] = effort_;
@@ -176,49 +182,83 @@ void LawRunner::onPlan(const msg::SwapPlan& plan) {
   if (service_.isOver() || (!isIncoming(plan) && !is_outgoing)) return;
   switch (plan.phase()) {
     case msg::SWAP_PREPARE:
+    case msg::SWAP_FORECAST:
       if (!isIncoming(plan)) return;
-      forecast_plan_ = plan.plan_id();
-      forecast_step_ = plan.forecast_step();
-      // The step may have gone by before the plan came.
-      if (const auto last = inputs_.lastDone(); last && *last >= forecast_step_) answerForecast();
+      if (owed_.size() == kMaxOwed) owed_.erase(owed_.begin());
+      owed_.push_back(plan);
+      answerForecasts();  // the step may have gone by before the plan came
       return;
     case msg::SWAP_COMMIT:
       if (is_outgoing) last_command_step_ = plan.at_step();
-      ack_.plan_id(plan.plan_id());
-      ack_.phase(msg::SWAP_COMMIT);
-      ack_.controller(config_.name);
-      ack_.ready(true);
-      ack_.effort().clear();
-      ack_.reason("");
-      ack_out_.write(ack_);
+      if (isIncoming(plan) && plan.hard()) fresh_step_ = plan.at_step();
+      acknowledge(plan, true, {}, "");
       return;
     case msg::SWAP_CANCEL:
-      forecast_plan_.reset();
+      std::erase_if(owed_, [&](const msg::SwapPlan& one) {
+        return one.phase() == msg::SWAP_PREPARE && one.plan_id() == plan.plan_id();
+      });
       if (is_outgoing) last_command_step_.reset();
+      if (isIncoming(plan)) fresh_step_.reset();
       return;
   }
 }
 
-void LawRunner::answerForecast() {
-  const std::size_t slot = StepInputs::slot(forecast_step_);
-  const std::uint64_t last = inputs_.lastDone().value_or(0);
-  const bool in_window = last < forecast_step_ + StepInputs::kWindow;
-  // A law that stands by cold is woken by the plan: it computes the forecast's step now.
-  if (in_window && history_[slot].size() == 0 && !active_) evaluate(forecast_step_, false);
-  const bool has_effort = in_window && history_[slot].size() == effort_.size();
-  ack_.plan_id(*forecast_plan_);
-  ack_.phase(msg::SWAP_PREPARE);
-  ack_.controller(config_.name);
-  ack_.ready(has_effort);
-  if (has_effort) {
-    assignSequence(history_[slot], ack_.effort());
-    ack_.reason("");
+void LawRunner::answerForecasts() {
+  const auto last = inputs_.lastDone();
+  std::erase_if(owed_, [&](const msg::SwapPlan& plan) {
+    if (!last || *last < plan.forecast_step()) return false;
+    answer(plan);
+    return true;
+  });
+}
+
+void LawRunner::answer(const msg::SwapPlan& plan) {
+  const std::uint64_t step = plan.forecast_step();
+  const std::size_t inputs = info_.uses_force ? 3 : 2;
+  for (std::size_t input = 0; input < inputs; ++input) {
+    if (!inputs_.has(input, step)) return acknowledge(plan, false, {}, "it has not computed that step");
+  }
+  // What it does in shadow is what it would command. A hard handover is another matter, and a law that stands by cold
+  // has done nothing: these are tried out.
+  JointVector effort = history_[StepInputs::slot(step)];
+  LawStatus status = LawStatus::kOk;
+  if (plan.hard()) {
+    status = tryOut(step, Start::kForgets, effort);
+  } else if (effort.size() == 0) {
+    status = tryOut(step, Start::kTakesOver, effort);
+  }
+  acknowledge(plan, status == LawStatus::kOk, effort, status == LawStatus::kOk ? "" : toString(status));
+}
+
+/// What the law would give at a step, without a trace.
+LawStatus LawRunner::tryOut(std::uint64_t step, Start start, JointVector& effort) {
+  StateArchive saved = StateArchive::into(law_state_);
+  law_->archive(saved);
+  const std::size_t slot = StepInputs::slot(step);
+  LawInput input = input_;
+  input.state = states_[slot];
+  input.reference = references_[slot];
+  input.contact = contacts_[slot];
+  if (start == Start::kForgets) law_->reset();
+  if (start == Start::kTakesOver) law_->handover(input);
+  effort = effort_;
+  const LawStatus status = law_->step(input, effort);
+  StateArchive back = StateArchive::from(std::span(law_state_).first(saved.size()));
+  law_->archive(back);
+  return status;
+}
+
+void LawRunner::acknowledge(const msg::SwapPlan& plan, bool ready, const JointVector& effort, const char* reason) {
+  ack_.plan_id(plan.plan_id());
+  ack_.phase(plan.phase());
+  ack_.ready(ready);
+  if (ready) {
+    assignSequence(effort, ack_.effort());
   } else {
     ack_.effort().clear();
-    ack_.reason(last_status_ != LawStatus::kOk ? toString(last_status_) : "it has not computed that step");
   }
+  ack_.reason(reason);
   ack_out_.write(ack_);
-  forecast_plan_.reset();
 }
 
 void LawRunner::publishStatus() {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "control/law.hpp"
 #include "runtime/checkpoint.hpp"
@@ -33,9 +34,13 @@ class LawRunner {
   void onPlan(const msg::SwapPlan& plan);
   void arrived(Input input, std::uint64_t step);
   void compute(std::uint64_t step);
-  void evaluate(std::uint64_t step, bool continues);
+  enum class Start { kContinues, kTakesOver, kForgets };  // of a law at a step: see Law
+  void evaluate(std::uint64_t step, Start start);
   void publish(std::uint64_t step, bool commands);
-  void answerForecast();
+  void answerForecasts();
+  void answer(const msg::SwapPlan& plan);
+  void acknowledge(const msg::SwapPlan& plan, bool ready, const JointVector& effort, const char* reason);
+  [[nodiscard]] LawStatus tryOut(std::uint64_t step, Start start, JointVector& effort);
   [[nodiscard]] bool isQuiet(std::uint64_t step) const;
   void forget();
   void publishStatus();
@@ -58,11 +63,12 @@ class LawRunner {
   JointVector effort_;
   LawStatus last_status_ = LawStatus::kOk;
   bool active_ = false;
-  std::uint64_t skipped_ = 0;                   // steps whose inputs were not complete in time
-  bool failing_ = false;                        // the last step gave no effort; reported once
-  std::optional<std::uint64_t> forecast_plan_;  // owed an answer
-  std::uint64_t forecast_step_ = 0;
+  std::uint64_t skipped_ = 0;  // steps whose inputs were not complete in time
+  bool failing_ = false;       // the last step gave no effort; reported once
+  static constexpr std::size_t kMaxOwed = 64;
+  std::vector<msg::SwapPlan> owed_;                 // forecasts that wait for their step
   std::optional<std::uint64_t> last_command_step_;  // as outgoing controller: command this step once more
+  std::optional<std::uint64_t> fresh_step_;         // as incoming controller of a hard handover: forget everything there
   Window<JointVector> history_;                     // efforts of the latest steps
 
   dds::Writer<msg::JointCommand>& command_out_;
@@ -71,6 +77,7 @@ class LawRunner {
   dds::Writer<msg::ControllerStatus>& status_out_;
   msg::JointCommand message_;
   msg::SwapAck ack_;
+  std::vector<std::byte> law_state_;  // while a law is tried out
 };
 
 }  // namespace baton

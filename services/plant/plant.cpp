@@ -2,28 +2,8 @@
 
 #include <algorithm>
 
-#include "control/law.hpp"
-
 namespace baton {
 namespace {
-
-ArbiterConfig arbiterConfig(const Scenario& scenario) {
-  const std::vector<std::string> names = controllerNames(scenario);
-  const auto index = [&](const std::string& name) {
-    return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
-  };
-  ArbiterConfig config{.members = {},
-                       .holder = index(scenario.active),
-                       .fallback = {},
-                       .margin_steps = scenario.baton.margin_steps,
-                       .max_effort_step = scenario.baton.max_effort_step,
-                       .end_step = scenario.end_step};
-  for (const ControllerConfig& controller : scenario.controllers) {
-    config.members.push_back({controller.name, findLaw(controller.law).requires_contact});
-  }
-  for (const std::string& name : scenario.baton.fallback) config.fallback.push_back(index(name));
-  return config;
-}
 
 StepMasterConfig masterConfig(const Scenario& scenario, std::uint64_t first_step) {
   const bool has_credit = scenario.recording.enabled && scenario.mode == SimMode::kLockstep;
@@ -32,9 +12,6 @@ StepMasterConfig masterConfig(const Scenario& scenario, std::uint64_t first_step
           .needs_contact = scenario.hasEnvironment(),
           .credit = has_credit ? scenario.recording.credit_steps : 0};
 }
-
-/// By an operator, not by the scenario.
-bool isAsked(const HandoverRequest& request) { return request.request_id != 0; }
 
 }  // namespace
 
@@ -45,6 +22,8 @@ Plant::Plant(Service& service)
       arm_(scenario_.robot, scenario_.armConfig()),
       master_(masterConfig(scenario_, checkpoints_.firstStep())),
       arbiter_(arbiterConfig(scenario_)),
+      dry_runs_(arbiter_),
+      meter_(scenario_.stepSeconds(), scenario_.baton.max_effort_rate),
       pacer_(scenario_.step_ns, scenario_.rate),
       timer_(service.executor()),
       effort_(JointVector::Zero(scenario_.robot.size())),
@@ -57,10 +36,13 @@ Plant::Plant(Service& service)
       rewind_out_(service.output(dds::topics::kRewind)),
       timing_out_(service.output(dds::topics::kTimingStatus)),
       plan_out_(service.output(dds::topics::kSwapPlan, withRecorder(controllerNames(scenario_), scenario_))),
-      outcome_out_(service.output(dds::topics::kSwapOutcome, withRecorder({}, scenario_))) {
+      outcome_out_(service.output(dds::topics::kSwapOutcome, withRecorder({}, scenario_))),
+      report_out_(service.output(dds::topics::kSwapReport, withRecorder({}, scenario_))),
+      baton_out_(service.output(dds::topics::kBatonStatus)) {
   prepare(state_message_);
   speakers_.resize(scenario_.controllers.size());
   successors_.resize(scenario_.controllers.size());
+  refusals_.resize(scenario_.controllers.size());
   scheduled_.reserve(scenario_.swaps.size() + kMaxScheduled);
   scheduleSwaps();
   for (const std::string& name : servicesBut(kPlantName, scenario_)) waited_for_.insert(name);
@@ -143,6 +125,7 @@ void Plant::startWhenAllAreReady() {
   if (service_.options().starts_paused) master_.pause();
   openStep();
   publishStatus();
+  publishBaton();
   if (isRealtime()) {
     armTimer();
   } else {
@@ -176,13 +159,6 @@ void Plant::askAgain() {
   again_out_.write(state_message_);
 }
 
-void Plant::scheduleSwaps() {
-  scheduled_.clear();
-  for (const PlannedSwap& swap : scenario_.swaps) {
-    scheduled_.push_back({.request_id = 0, .target = memberCalled(swap.to), .at_step = swap.at_step, .force = false});
-  }
-}
-
 void Plant::resumeFromCheckpoint() {
   if (!checkpoints_.restore(*this)) return;
   // What the scenario plans for earlier has been asked for already; see planSwaps().
@@ -193,40 +169,9 @@ void Plant::resumeFromCheckpoint() {
 void Plant::archive(StateArchive& state) {
   arm_.archive(state);
   arbiter_.archive(state);
-  state(chain_hash_, missed_, missed_in_a_row_);
-  // Of the handovers that wait for their time, those of operators: the scenario's are in the scenario.
-  auto count = static_cast<std::uint32_t>(std::count_if(scheduled_.begin(), scheduled_.end(), isAsked));
-  state(count);
-  if (state.isRestoring()) {
-    for (; count > 0 && state.isGood(); --count) {
-      HandoverRequest request;
-      state(request.request_id, request.target, request.at_step, request.force);
-      scheduled_.push_back(request);
-    }
-  } else {
-    for (HandoverRequest& request : scheduled_) {
-      if (isAsked(request)) state(request.request_id, request.target, request.at_step, request.force);
-    }
-  }
-}
-
-void Plant::planSwaps() {
-  // A handover for step K is asked for at K - margin - 1, the last step at which it can be: nothing is blocked until
-  // then.
-  const std::uint64_t at_step = master_.step() + scenario_.baton.margin_steps + 1;
-  for (const HandoverRequest& request : scheduled_) {
-    if (request.at_step == at_step) arbiter_.request(request, master_.step());
-  }
-  std::erase_if(scheduled_, [&](const HandoverRequest& request) { return request.at_step <= at_step; });
-  publishSwapActions();
-}
-
-void Plant::considerSwap() {
-  if (master_.inputsHold() == Hold::kNone) {
-    arbiter_.consider(master_.step(), effort_, contact_.penetration > 0.0);
-    publishSwapActions();
-  }
-  master_.awaitSwap(!isRealtime() && arbiter_.awaits(master_.step()));
+  state(chain_hash_, missed_, missed_in_a_row_, metered_plan_);
+  meter_.archive(state);
+  archiveScheduled(state);
 }
 
 void Plant::memberFailed(int member, const char* reason) {
@@ -239,15 +184,18 @@ void Plant::memberFailed(int member, const char* reason) {
     master_.commandArrived(step);
   }
   if (was_outgoing) master_.needOutgoing(false);
+  dry_runs_.memberFailed(member);
+  publishDryRuns();
+  publishBaton();
   if (reset_) resetAcknowledged(nameOf(member));
 }
 
 void Plant::memberReturned(int member) {
   if (!arbiter_.hasFailed(member)) return;
   arbiter_.memberReturned(member);
-  if (!arbiter_.hasFailed(member)) {
-    service_.event(msg::SEVERITY_INFO, "returned", nameOf(member) + " answers again and stands by");
-  }
+  if (arbiter_.hasFailed(member)) return;  // the open step is its own still
+  service_.event(msg::SEVERITY_INFO, "returned", nameOf(member) + " answers again and stands by");
+  publishBaton();
 }
 
 void Plant::keepTorque() {
@@ -318,17 +266,11 @@ void Plant::tick() {
 void Plant::endStep() {
   const std::uint64_t step = master_.step();
   const JointVector tau_before = arm_.state().tau_applied;
-  JointVector raw_step = JointVector::Zero(effort_.size());
+  const JointVector q_before = arm_.state().q;
+  dryRunsKnowStep();
   // A new holder that is late for its first step (realtime) takes over with its first command.
   const bool takes_over = completed_ && master_.hasCommand();
-  if (takes_over) {
-    // What the joints would have felt at this very step: the outgoing controller's torque, or, when it can give none,
-    // what they felt before. The old blend, if one still runs, is part of it.
-    const bool has_outgoing = master_.hasOutgoingCommand();
-    const JointVector tau_old = has_outgoing ? arm_.blended(step, outgoing_effort_) : tau_before;
-    raw_step = tau_old - effort_;
-    arm_.blendFrom(step, raw_step);
-  }
+  const JointVector raw_step = takes_over ? takeOver(step) : JointVector();
   if (!arm_.move(arm_.blended(step, effort_), contact_)) {
     return abort("the motion is no longer finite: the step may be too long for the law's gains");
   }
@@ -338,6 +280,7 @@ void Plant::endStep() {
     publishDone(*completed_, completed_reason_.data(), raw_step, arm_.state().tau_applied - tau_before);
     completed_.reset();
   }
+  measureStep(step, tau_before, q_before);
   service_.stepDone(step);
   master_.advance();
   service_.at(master_.step());
@@ -359,24 +302,14 @@ void Plant::finish() {
     publishDone(*completed_, *failure != '\0' ? failure : "the run ended before its first step did", {}, {});
     completed_.reset();
   }
+  publishReport(true);
+  dry_runs_.dropAll("the run has ended");
+  publishDryRuns();
   refuseScheduled("the run has ended");
   if (reset_) dropReset("the run has ended");
   publishStatus();
   service_.stepDone(master_.step());
   service_.runEnded(master_.step(), true);
-}
-
-void Plant::refuseScheduled(const char* reason) {
-  for (const HandoverRequest& request : scheduled_) {
-    HandoverPlan plan;
-    plan.request_id = request.request_id;
-    plan.outgoing = arbiter_.holder();
-    plan.incoming = request.target;
-    plan.decided_at_step = master_.step();
-    plan.at_step = request.at_step;
-    publishRefusal(plan, reason);
-  }
-  scheduled_.clear();
 }
 
 void Plant::abort(const std::string& reason) {

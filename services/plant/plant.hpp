@@ -14,10 +14,12 @@
 #include <vector>
 
 #include "control/arm.hpp"
+#include "control/handover_meter.hpp"
 #include "runtime/checkpoint.hpp"
 #include "runtime/service.hpp"
 #include "step_timing.hpp"
 #include "time/baton_arbiter.hpp"
+#include "time/dry_runs.hpp"
 #include "time/pacer.hpp"
 #include "time/step_master.hpp"
 
@@ -61,15 +63,30 @@ class Plant {
   void abort(const std::string& reason);
   void memberFailed(int member, const char* reason);
   void memberReturned(int member);
-  void considerSwap();
-  void scheduleSwaps();
-  void refuseScheduled(const char* reason);
   void resumeFromCheckpoint();
+  // plant_baton.cpp: handovers
+  [[nodiscard]] static ArbiterConfig arbiterConfig(const Scenario& scenario);
+  void scheduleSwaps();
+  void archiveScheduled(StateArchive& state);
   void planSwaps();
+  void refuseScheduled(const char* reason);
+  void considerSwap();
+  void onDryRun(const HandoverRequest& request, const char* target);
+  void dryRunsKnowStep();
+  void publishDryRuns();
   void publishSwapActions();
+  void publishPlan(const HandoverPlan& plan, std::uint64_t id, msg::SwapPhase phase);
   void publishRefusal(const HandoverPlan& plan, const char* reason);
   void publishDone(const HandoverPlan& plan, const char* reason, const JointVector& raw_step,
                    const JointVector& applied_step);
+  void publishDryRun(const DryRun& dry_run);
+  void publishBaton();
+  [[nodiscard]] msg::SwapOutcome outcomeOf(const HandoverPlan& plan, const char* reason) const;
+  /// The first step of a new holder: what its torque lacks of the old one's begins to fade.
+  [[nodiscard]] JointVector takeOver(std::uint64_t step);
+  void measureStep(std::uint64_t step, const JointVector& tau_before, const JointVector& q_before);
+  void publishReport(bool cut_short);
+  // plant_outputs.cpp
   void publishStatus();
   void armTimer();
   void watchLateness();
@@ -88,6 +105,8 @@ class Plant {
   Arm arm_;
   StepMaster master_;
   BatonArbiter arbiter_;
+  DryRuns dry_runs_;
+  HandoverMeter meter_;
   Pacer pacer_;
   boost::asio::steady_timer timer_;
 
@@ -106,6 +125,12 @@ class Plant {
   std::vector<Speaker> speakers_;    // by member
   std::vector<Speaker> successors_;  // ready before their predecessor was known to have failed
 
+  struct Refusal {
+    std::uint64_t step = 0;
+    ReasonText reason{};  // empty: none
+  };
+  std::vector<Refusal> refusals_;  // the last one of each member
+
   /// A reset that has been asked for.
   struct Reset {
     std::uint64_t request_id = 0;
@@ -121,6 +146,7 @@ class Plant {
   std::set<std::string, std::less<>> waited_for_;  // services not ready yet
   std::optional<HandoverPlan> completed_;          // took effect at the open step: its outcome follows the motion
   ReasonText completed_reason_{};
+  std::uint64_t metered_plan_ = 0;  // whose effect the meter measures
   static constexpr std::size_t kMaxScheduled = 64;  // asked for by operators, besides those of the scenario
   std::vector<HandoverRequest> scheduled_;          // handovers for later steps
   bool keeps_torque_ = false;                       // for the open step
@@ -143,6 +169,8 @@ class Plant {
   dds::Writer<msg::TimingStatus>& timing_out_;
   dds::Writer<msg::SwapPlan>& plan_out_;
   dds::Writer<msg::SwapOutcome>& outcome_out_;
+  dds::Writer<msg::SwapReport>& report_out_;
+  dds::Writer<msg::BatonStatus>& baton_out_;
   msg::PlantState state_message_;
 };
 

@@ -80,6 +80,15 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
   }
 }
 
+/// Whoever failed and lives goes on computing: it is eligible again once it has answered a later step. As holder it
+/// never returns by itself.
+void Plant::onControllerStatus(const msg::ControllerStatus& status, const dds::RawSample& sample) {
+  const int member = memberCalled(status.name().c_str());
+  if (master_.isOver() || !speaksFor(member, sample) || !arbiter_.hasFailed(member)) return;
+  const bool stands_by = status.state() == msg::CONTROLLER_STANDBY || status.state() == msg::CONTROLLER_COLD;
+  if (stands_by && status.step() > arbiter_.failedAt(member)) memberReturned(member);
+}
+
 void Plant::onSimRequest(const msg::SimRequest& request) {
   if (service_.isOver()) return;
   msg::SimReply reply;
@@ -159,50 +168,6 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
   proceed();
   armTimer();
   publishStatus();
-}
-
-void Plant::onSwapRequest(const msg::SwapRequest& request) {
-  if (service_.isOver()) return;
-  const int member = memberCalled(request.target().c_str());
-  const std::uint64_t earliest = master_.step() + scenario_.baton.margin_steps + 1;
-  const bool can_wait = request.at_step() > earliest && scheduled_.size() < scheduled_.capacity() &&
-                        (master_.endStep() == 0 || request.at_step() < master_.endStep());
-  if (member != kBrake && can_wait) {
-    // Asked for again when its time has come: until then nothing else is blocked.
-    scheduled_.push_back({request.request_id(), member, request.at_step(), request.force()});
-  } else if (member == kBrake) {
-    arbiter_.refuseUnknown(request.request_id(), request.target().c_str(), master_.step());
-  } else {
-    arbiter_.request(
-        {.request_id = request.request_id(), .target = member, .at_step = request.at_step(), .force = request.force()},
-        master_.step());
-  }
-  publishSwapActions();
-  proceed();
-}
-
-/// Whoever failed and lives goes on computing: it is eligible again once it has answered a later step. As holder it
-/// never returns by itself.
-void Plant::onControllerStatus(const msg::ControllerStatus& status, const dds::RawSample& sample) {
-  const int member = memberCalled(status.name().c_str());
-  if (master_.isOver() || !speaksFor(member, sample) || !arbiter_.hasFailed(member)) return;
-  const bool stands_by = status.state() == msg::CONTROLLER_STANDBY || status.state() == msg::CONTROLLER_COLD;
-  if (stands_by && status.step() > arbiter_.failedAt(member)) memberReturned(member);
-}
-
-void Plant::onSwapAck(const msg::SwapAck& ack, const dds::RawSample& sample) {
-  const int member = memberCalled(ack.controller().c_str());
-  if (!speaksFor(member, sample)) return;
-  if (ack.phase() == msg::SWAP_PREPARE) {
-    JointVector effort;
-    const bool finite = readSequence(ack.effort(), scenario_.robot.size(), effort);
-    const bool ready = ack.ready() && finite;
-    arbiter_.prepareAcknowledged(ack.plan_id(), member, ready, effort,
-                                 ack.ready() && !finite ? "its forecast is not finite" : ack.reason().c_str());
-  } else if (ack.phase() == msg::SWAP_COMMIT) {
-    arbiter_.commitAcknowledged(ack.plan_id(), member);
-  }
-  proceed();
 }
 
 }  // namespace baton

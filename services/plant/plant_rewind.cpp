@@ -64,6 +64,9 @@ void Plant::finishReset() {
   const std::uint64_t request_id = reset_->request_id;
   reset_.reset();
   refuseScheduled("the run was reset");
+  dry_runs_.dropAll("the run was reset");
+  publishDryRuns();
+  publishReport(true);
   arm_.reset();
   arbiter_.prepareRewind();  // what has been asked for meanwhile
   publishSwapActions();
@@ -91,6 +94,7 @@ void Plant::finishReset() {
   publishSwapActions();
   openStep();
   publishStatus();
+  publishBaton();
   armTimer();
   if (!isRealtime()) proceed();
 }

@@ -47,7 +47,9 @@ Supervisor::Supervisor(Service& service, Deployment deployment)
   service.input(dds::topics::kRecorderStatus, {},
                 [this](const msg::RecorderStatus& status, const dds::RawSample&) { recorder_ = status; });
   service.input(dds::topics::kSwapOutcome, {},
-                [this](const msg::SwapOutcome& outcome, const dds::RawSample&) { swaps_.push_back(outcome); });
+                [this](const msg::SwapOutcome& outcome, const dds::RawSample&) {
+                  if (!outcome.dry_run()) swaps_.push_back(outcome);
+                });
 }
 
 ExitCode Supervisor::run() {

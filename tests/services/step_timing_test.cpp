@@ -67,5 +67,27 @@ TEST(StepTiming, JitterIsTheLatenessOfTheTick) {
   EXPECT_DOUBLE_EQ(jitter.max_us(), 250.0);
 }
 
+TEST(StepTiming, AHandoverTakesFromItsPlanToItsStep) {
+  StepTiming timing;
+  timing.opened(0, true);
+  timing.planned(1, 1'000'000);
+  timing.handedOver(1, 4'000'000);
+  timing.handedOver(0, 5'000'000);  // a failover: nobody asked
+  timing.planned(2, 6'000'000);     // comes to nothing
+  timing.planned(3, 7'000'000);
+  timing.handedOver(2, 8'000'000);
+  timing.handedOver(3, 8'000'000);
+  timing.planned(4, 9'000'000);
+  timing.interrupted();  // an operator's pause is nobody's delay
+  timing.handedOver(4, 99'000'000);
+  timing.planned(5, 99'000'000);
+  timing.handedOver(5, 100'000'000);
+  const msg::TimingStatus status = timing.report(9, 0);
+  EXPECT_EQ(status.handover().count(), 2u);
+  EXPECT_EQ(status.handover().max_us(), 3000.0);
+  EXPECT_EQ(status.last_handover_plan(), 3u);
+  EXPECT_EQ(status.last_handover_us(), 1000.0);
+}
+
 }  // namespace
 }  // namespace baton

@@ -16,10 +16,11 @@ namespace baton {
 namespace {
 
 constexpr double kBrakeRate = 20.0;  // 1/s, as arm.hpp says
+constexpr std::uint64_t kBlend = 100;  // steps
 const JointVector kStart = Vector3(0.3, 0.05, 0.1);
 
 ArmConfig configOf(const JointVector& q, const JointVector& qd, double step_s = 5e-4) {
-  return {.step_s = step_s, .blend_steps = 100, .start_q = q, .start_qd = qd};
+  return {.step_s = step_s, .start_q = q, .start_qd = qd};
 }
 
 /// Brakes for `steps` steps in free space.
@@ -91,13 +92,13 @@ TEST(ArmBlend, NothingJumpsAtTheHandoverAndNothingIsLeftAfterTheBlend) {
   const Vector3 tau_old(3.0, -1.0, 0.5), tau_new(-7.0, 4.0, 0.25);
   constexpr std::uint64_t kHandover = 1000;
   EXPECT_EQ(arm.blended(kHandover - 1, tau_old), tau_old);
-  arm.blendFrom(kHandover, tau_old - tau_new);
+  arm.blendFrom(kHandover, kBlend, tau_old - tau_new);
   EXPECT_LT((arm.blended(kHandover, tau_new) - tau_old).norm(), 1e-14);  // rounding of one subtraction and one sum
-  const std::uint64_t over = kHandover + config.blend_steps;
+  const std::uint64_t over = kHandover + kBlend;
   EXPECT_EQ(arm.blended(over, tau_new), tau_new);
   EXPECT_NE(arm.blended(over - 1, tau_new), tau_new);
   // The quintic's slope is at most 15/8 of the mean slope.
-  const double largest = 15.0 / 8.0 / static_cast<double>(config.blend_steps);
+  const double largest = 15.0 / 8.0 / static_cast<double>(kBlend);
   for (std::uint64_t step = kHandover; step < over; ++step) {
     const Vector3 change = arm.blended(step + 1, tau_new) - arm.blended(step, tau_new);
     EXPECT_LE(change.norm(), largest * (tau_old - tau_new).norm() * (1.0 + 1e-12));
@@ -108,9 +109,9 @@ TEST(ArmBlend, AHandoverDuringABlendDoesNotJumpEither) {
   const RobotModel robot = test::rppRobot();
   Arm arm(robot, configOf(kStart, JointVector::Zero(3)));
   const Vector3 tau1(1.0, 2.0, 3.0), tau2(9.0, -5.0, 0.0), tau3(-4.0, 4.0, 8.0);
-  arm.blendFrom(10, tau1 - tau2);
+  arm.blendFrom(10, kBlend, tau1 - tau2);
   const Vector3 felt = arm.blended(60, tau2);
-  arm.blendFrom(60, felt - tau3);
+  arm.blendFrom(60, kBlend, felt - tau3);
   EXPECT_LT((arm.blended(60, tau3) - felt).norm(), 1e-14);
 }
 
@@ -173,7 +174,7 @@ TEST(ArmHotPath, NeverAllocates) {
   Arm arm(robot, configOf(kStart, Vector3(0.4, -0.3, 0.2)));
   const JointVector r0 = Vector3(1.0, 2.0, 3.0);
   const test::AllocationGuard guard;
-  arm.blendFrom(0, r0);
+  arm.blendFrom(0, kBlend, r0);
   bool good = true;
   for (std::uint64_t step = 0; step < 200; ++step) {
     good = arm.move(arm.blended(step, arm.brakeEffort()), Contact{}) && good;

@@ -157,6 +157,9 @@ inline void fill(msg::TimingStatus& m) {
   fill(m.jitter());
   fill(m.command_age());
   m.missed_steps(kId);
+  fill(m.handover());
+  m.last_handover_plan(kId);
+  m.last_handover_us(5.5);
 }
 
 inline void fill(msg::SwapRequest& m) {
@@ -164,15 +167,20 @@ inline void fill(msg::SwapRequest& m) {
   m.target(fullName());
   m.at_step(kId);
   m.force(true);
+  m.dry_run(true);
+  m.hard(true);
+  m.blend_ns(kTime);
 }
 
 inline void fill(msg::SwapPlan& m) {
   m.plan_id(kId);
-  m.phase(msg::SWAP_CANCEL);
+  m.phase(msg::SWAP_FORECAST);
   m.outgoing(fullName());
   m.incoming(fullName());
   m.forecast_step(kId);
   m.at_step(kId);
+  m.blend_steps(kId);
+  m.hard(true);
 }
 
 inline void fill(msg::SwapAck& m) {
@@ -189,14 +197,48 @@ inline void fill(msg::SwapOutcome& m) {
   m.take(7);
   m.plan_id(kId);
   m.done(true);
+  m.dry_run(true);
+  m.feasible(true);
+  m.hard(true);
   m.outgoing(fullName());
   m.incoming(fullName());
   m.decided_at_step(kId);
+  m.forecast_step(kId);
   m.at_step(kId);
   m.blend_steps(kId);
+  m.forecast_effort_step(fullSequence());
   m.raw_effort_step(fullSequence());
   m.applied_effort_step(fullSequence());
   m.reason(std::string(200, 'r'));
+}
+
+inline void fill(msg::SwapReport& m) {
+  m.plan_id(kId);
+  m.take(7);
+  m.at_step(kId);
+  m.steps(kId);
+  m.cut_short(true);
+  m.max_effort_rate(fullSequence());
+  m.rate_limit_hits(kId);
+  m.peak_force_deviation(0.5);
+  m.blend_energy(-0.25);
+}
+
+inline void fill(msg::BatonMember& m) {
+  m.name(fullName());
+  m.failed(true);
+  m.refused_at_step(kId);
+  m.refusal(std::string(200, 'r'));
+}
+
+inline void fill(msg::BatonStatus& m) {
+  m.holder(fullName());
+  m.plan_id(kId);
+  m.request_id(kId);
+  m.incoming(fullName());
+  m.at_step(kId);
+  m.members().resize(msg::MAX_CONTROLLERS);
+  for (msg::BatonMember& member : m.members()) fill(member);
 }
 
 inline void fill(msg::ControllerStatus& m) {

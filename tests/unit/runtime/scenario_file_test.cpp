@@ -57,7 +57,7 @@ standby: cold
 swaps:
   - {at_s: 1.0, to: impedance}
   - {at_s: 4.0, to: force}
-baton: {margin_steps: 6, blend_s: 0.15, max_effort_step: 40, fallback: [impedance, tracking]}
+baton: {margin_steps: 6, blend_s: 0.15, max_effort_step: 40, max_effort_rate: [300, 200, 100], fallback: [impedance, tracking]}
 recording: {enabled: false, compression: lz4, credit_steps: 64}
 )";
 
@@ -128,6 +128,7 @@ TEST(ScenarioFile, GivesEachFieldItsPlace) {
   EXPECT_EQ(s.baton.margin_steps, 6u);
   EXPECT_EQ(s.baton.blend_steps, 300u);
   EXPECT_EQ(s.baton.max_effort_step, 40.0);
+  EXPECT_EQ(s.baton.max_effort_rate, JointVector(Vector3(300.0, 200.0, 100.0)));
   EXPECT_EQ(s.baton.fallback, (std::vector<std::string>{"impedance", "tracking"}));
   EXPECT_FALSE(s.recording.enabled);
   EXPECT_EQ(s.recording.compression, "lz4");
@@ -164,6 +165,7 @@ TEST(ScenarioFile, NeedsNoMoreThanARobotAStepAMotionAndAController) {
   EXPECT_EQ(s.baton.margin_steps, defaults.baton.margin_steps);
   EXPECT_EQ(s.baton.blend_steps, 100u);  // 0.1 s
   EXPECT_EQ(s.baton.max_effort_step, defaults.baton.max_effort_step);
+  EXPECT_EQ(s.baton.max_effort_rate, JointVector(Vector3::Constant(1000.0)));
   EXPECT_TRUE(s.baton.fallback.empty());
   EXPECT_TRUE(s.recording.enabled);
   EXPECT_EQ(s.recording.compression, defaults.recording.compression);
@@ -218,6 +220,14 @@ TEST(ScenarioFile, RealtimeGivesUpASilentHolderWithin20MsAndHandsOverWithin5) {
   EXPECT_EQ(missed("0.004"), 4u);
   EXPECT_EQ(missed("0.01"), 1u);
   EXPECT_EQ(missed("0.1"), 1u) << "one is always forgiven";
+}
+
+TEST(ScenarioFile, AJointsEffortLimitScalesItsEffortRate) {
+  const std::string without = replaced(kTrial, "max_effort_rate: [300, 200, 100], ", "");
+  const Scenario s = parse(replaced(without, "start: {", "effort_limit: [87, 8.7, 1e9]\nstart: {"));
+  EXPECT_NEAR(s.baton.max_effort_rate(0), 1000.0, 1e-12);
+  EXPECT_NEAR(s.baton.max_effort_rate(1), 100.0, 1e-13);
+  EXPECT_EQ(parse(replaced(kTrial, "[300, 200, 100]", "40")).baton.max_effort_rate, JointVector(Vector3::Constant(40)));
 }
 
 TEST(ScenarioFile, LetsTheBatonComeBackAndSwapsFollowAsCloselyAsTheyMay) {
@@ -361,6 +371,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "found nothing"},
         BadInput{"NoMargin", "margin_steps: 6", "margin_steps: 0", "baton:", "from 1 to 1000", "'0'"},
         BadInput{"NegativeBlend", "blend_s: 0.15", "blend_s: -0.15", "baton:", "from 0 to 10 s", "'-0.15'"},
+        BadInput{"NoEffortRate", "max_effort_rate: [300, 200, 100]", "max_effort_rate: [300, 0, 100]", "baton:",
+                 "above 0", "'0'"},
         BadInput{"NoEffortStep", "max_effort_step: 40", "max_effort_step: 0", "baton:", "above 0", "'0'"},
         BadInput{"UnknownFallback", "[impedance, tracking]", "[impedence]", "baton:", "did you mean 'impedance'?",
                  "'impedence'"},

@@ -25,6 +25,13 @@ inline ArbiterConfig fourControllers() {
 
 inline JointVector efforts(double value) { return JointVector::Constant(3, value); }
 
+inline Forecast forecastOf(const JointVector& effort) { return {.is_ready = true, .effort = effort}; }
+inline Forecast notReady(const char* reason) {
+  Forecast forecast;
+  write(forecast.not_ready, "%s", reason);
+  return forecast;
+}
+
 using Kind = ArbiterAction::Kind;
 
 class ArbiterRun {
@@ -58,7 +65,7 @@ class ArbiterRun {
   }
 
   void forecast(std::uint64_t plan_id, int member, double value) {
-    arbiter.prepareAcknowledged(plan_id, member, true, efforts(value), "");
+    arbiter.prepareAcknowledged(plan_id, member, forecastOf(efforts(value)));
   }
 
   void commitAcknowledgedBy(int member) { arbiter.commitAcknowledged(lastPlan().plan_id, member); }

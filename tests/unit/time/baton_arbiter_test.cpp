@@ -162,7 +162,7 @@ TEST(BatonArbiter, AcknowledgementsOfOthersAndOfOtherPlansAreIgnored) {
   run.arbiter.commitAcknowledged(2, kSecond);
   run.arbiter.commitAcknowledged(1, kSpare);
   run.arbiter.commitAcknowledged(1, kBrake);
-  run.arbiter.prepareAcknowledged(1, kSecond, false, {}, "too late to refuse");
+  run.arbiter.prepareAcknowledged(1, kSecond, notReady("too late to refuse"));
   EXPECT_TRUE(run.arbiter.awaits(kMargin));
   run.next();
   expectRefusedAfterAPlan(run, "did not acknowledge the commit");
@@ -286,29 +286,28 @@ TEST(BatonArbiter, AnEndThatIsBroughtForwardCancelsThePlanBehindIt) {
   }
 }
 
-/// A request to `target` whose forecast is `effort`, up to the decision.
-ArbiterRun decided(int target, const JointVector& effort, bool force = false, bool in_contact = false,
-                   bool ready = true, const char* reason = "") {
+/// A request to `target` with this forecast, up to the decision.
+ArbiterRun decided(int target, const Forecast& forecast, bool force = false, bool in_contact = false) {
   ArbiterRun run;
   run.in_contact = in_contact;
   run.request(target, 0, force);
   run.runTo(1);
-  run.arbiter.prepareAcknowledged(1, target, ready, effort, reason);
+  run.arbiter.prepareAcknowledged(1, target, forecast);
   run.consider();
   return run;
 }
 
 TEST(BatonArbiter, RefusesWhoIsNotReady) {
-  expectRefusedAfterAPlan(decided(kSecond, efforts(0.0), true, false, false, "it is cold"), "is not ready: it is cold");
+  expectRefusedAfterAPlan(decided(kSecond, notReady("it is cold"), true), "is not ready: it is cold");
 }
 
 TEST(BatonArbiter, RefusesAForecastAboveTheLimitUnlessForced) {
   JointVector effort = efforts(0.0);
   effort(1) = -kLimit;
-  EXPECT_EQ(decided(kSecond, effort).actions.back().kind, Kind::kCommit) << "the limit itself is allowed";
+  EXPECT_EQ(decided(kSecond, forecastOf(effort)).actions.back().kind, Kind::kCommit) << "the limit itself is allowed";
   effort(1) = std::nextafter(-kLimit, -100.0);
-  expectRefusedAfterAPlan(decided(kSecond, effort), "joint 2");
-  EXPECT_EQ(decided(kSecond, effort, true).actions.back().kind, Kind::kCommit);
+  expectRefusedAfterAPlan(decided(kSecond, forecastOf(effort)), "joint 2");
+  EXPECT_EQ(decided(kSecond, forecastOf(effort), true).actions.back().kind, Kind::kCommit);
 }
 
 TEST(BatonArbiter, ComparesTheForecastWithTheHoldersEffortOfTheSameStep) {
@@ -322,18 +321,44 @@ TEST(BatonArbiter, ComparesTheForecastWithTheHoldersEffortOfTheSameStep) {
 }
 
 TEST(BatonArbiter, RefusesAForceLawOutOfContactEvenIfForced) {
-  expectRefusedAfterAPlan(decided(kForce, efforts(0.0), true, false), "touches nothing");
-  EXPECT_EQ(decided(kForce, efforts(0.0), false, true).actions.back().kind, Kind::kCommit);
+  expectRefusedAfterAPlan(decided(kForce, forecastOf(efforts(0.0)), true, false), "touches nothing");
+  EXPECT_EQ(decided(kForce, forecastOf(efforts(0.0)), false, true).actions.back().kind, Kind::kCommit);
 }
 
 TEST(BatonArbiter, RefusesAForecastThatIsNoEffortEvenIfForced) {
-  expectRefusedAfterAPlan(decided(kSecond, JointVector::Zero(2), true), "2 efforts");
-  expectRefusedAfterAPlan(decided(kSecond, JointVector(), true), "0 efforts");
+  expectRefusedAfterAPlan(decided(kSecond, forecastOf(JointVector::Zero(2)), true), "2 efforts");
+  expectRefusedAfterAPlan(decided(kSecond, forecastOf(JointVector()), true), "0 efforts");
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     JointVector effort = efforts(0.0);
     effort(2) = bad;
-    expectRefusedAfterAPlan(decided(kSecond, effort, true), "not 3 finite ones");
+    expectRefusedAfterAPlan(decided(kSecond, forecastOf(effort), true), "not 3 finite ones");
   }
+}
+
+TEST(BatonArbiter, ThePlanCarriesBlendHardnessAndTheForecastDifference) {
+  ArbiterConfig config = fourControllers();
+  config.blend_steps = 200;
+  const auto plan = [&](const HandoverRequest& request) {
+    ArbiterRun run(config);
+    run.arbiter.request(request, 0);
+    run.runTo(1);
+    run.effort = efforts(2.0);
+    run.forecast(1, kSecond, 5.0);
+    run.consider();
+    EXPECT_EQ(run.actions.back().kind, Kind::kCommit);
+    return run.lastPlan();
+  };
+  EXPECT_EQ(plan({.target = kSecond}).blend_steps, 200u);
+  EXPECT_EQ(plan({.target = kSecond, .blend_steps = 30}).blend_steps, 30u);
+  EXPECT_EQ(plan({.target = kSecond, .blend_steps = 0}).blend_steps, 0u);
+  const HandoverPlan hard = plan({.target = kSecond, .hard = true, .blend_steps = 30});
+  EXPECT_EQ(hard.blend_steps, 0u);
+  EXPECT_TRUE(hard.hard);
+  EXPECT_EQ(hard.forecast_effort_step, efforts(3.0));
+  ArbiterRun failed(config);
+  failed.fail(kFirst);
+  failed.next();
+  EXPECT_EQ(failed.lastPlan().blend_steps, 200u) << "a failover blends as the scenario says";
 }
 
 TEST(BatonArbiter, RefusesAForecastThatNeverCame) {
@@ -354,7 +379,7 @@ TEST(BatonArbiter, RefusesAForecastThatCameAfterItsStep) {
 }
 
 TEST(BatonArbiter, AfterARefusalTheWayIsFree) {
-  ArbiterRun run = decided(kSecond, efforts(2 * kLimit));
+  ArbiterRun run = decided(kSecond, forecastOf(efforts(2 * kLimit)));
   EXPECT_FALSE(run.arbiter.awaits(run.step));
   run.forecast(1, kSecond, 0.0);  // a late word on the cancelled plan
   run.arbiter.commitAcknowledged(1, kSecond);
@@ -371,7 +396,7 @@ TEST(BatonArbiter, LongNamesAndReasonsAreCutNotOverrun) {
   run.request(kSecond);
   run.request(kSpare);
   EXPECT_LT(run.lastReason().size(), ReasonText{}.size());
-  run.arbiter.prepareAcknowledged(1, kSecond, false, efforts(0.0), longest.c_str());
+  run.arbiter.prepareAcknowledged(1, kSecond, notReady(longest.c_str()));
   run.runTo(2);
   EXPECT_LT(run.lastReason().size(), ReasonText{}.size());
   run.fail(kFirst, longest.c_str());
