@@ -27,13 +27,11 @@ FigureRun readRun(const YamlNode& node) {
 }
 
 CheckRequest readCheck(const YamlNode& node, std::size_t runs) {
-  const YamlMap check = node.map({"name", "run", "other", "tolerance"});
+  const YamlMap check = node.map({"name", "run", "other"});
   const auto last = static_cast<std::int64_t>(runs) - 1;
-  CheckRequest read{.name = known(check["name"], "check", checkNames()), .other = {}, .tolerance = {}};
+  CheckRequest read{.name = known(check["name"], "check", checkNames()), .other = {}};
   read.run = static_cast<int>(check.integerOr("run", 0, last, 0));
   if (const auto other = check.find("other")) read.other = static_cast<int>(other->integer(0, last));
-  if (const auto tolerance = check.find("tolerance"))
-    read.tolerance = tolerance->number({.minimum = 0.0, .unit = {}, .open = true});
   return read;
 }
 
