@@ -169,8 +169,8 @@ Checks admittanceBalance(const Inputs& in) {
   checks.push_back(
       sampledTip(in.run, [&](const Reference& ref, const Vector3& p, const Vector3& v, const Vector3& h_e) {
         const Vector3 zdd = (h_e - kdt.cwiseProduct(zd) - kpt.cwiseProduct(z)).cwiseQuotient(mt);
-        const Vector3 wish = ref.A_WE.head<3>() - zdd + kd.cwiseProduct(ref.V_WE.head<3>() - zd - v) +
-                             kp.cwiseProduct(ref.X_WE.p - z - p);
+        Vector3 wish = ref.A_WE.head<3>() - zdd + kd.cwiseProduct(ref.V_WE.head<3>() - zd - v) +
+                       kp.cwiseProduct(ref.X_WE.p - z - p);
         for (int i = 0; i < 3; ++i) {
           const double rest = h_e(i) / kpt(i);
           const FreeResponse next =

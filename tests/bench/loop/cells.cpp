@@ -49,7 +49,7 @@ class Starter {
   }
 
   /// How long a cell had run by then [s], by its plant's own count.
-  [[nodiscard]] double letGoAt_s(const std::string& cell) {
+  [[nodiscard]] double elapsedWhenLetGo(const std::string& cell) {
     const std::lock_guard lock(mutex_);
     const Word& word = last_words_.at(cell);
     return word.elapsed_s + std::chrono::duration<double>(let_go_ - word.heard).count();
@@ -108,7 +108,7 @@ Measurement measureCells(const Case& one, int steps, Programs& programs) {
     p50s_us.push_back(result.at("timing").at("period_us").at("p50"));
     p99s_us.push_back(result.at("timing").at("period_us").at("p99"));
     steps_in_all += result.at("steps").get<double>();
-    longest_s = std::max(longest_s, result.at("elapsed_s").get<double>() - starter.letGoAt_s(cellName(i)));
+    longest_s = std::max(longest_s, result.at("elapsed_s").get<double>() - starter.elapsedWhenLetGo(cellName(i)));
   }
   Measurement measured{.steps_per_s = steps_in_all / longest_s};
   measured.p50_us = median(p50s_us);
