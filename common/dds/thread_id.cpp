@@ -30,6 +30,7 @@ Syscall next() noexcept {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): the header has a reserved one
 extern "C" long syscall(long number, ...) noexcept {
   if (number == SYS_gettid && own_id != 0) return own_id;
   va_list arguments;

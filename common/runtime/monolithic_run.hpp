@@ -37,9 +37,8 @@ class MonolithicRun {
   [[nodiscard]] std::uint64_t steps() const { return step_; }
   /// At the start of the open step.
   [[nodiscard]] const RobotState& state() const { return arm_.state(); }
-  // Of the step done last: what the law was given and what it gave, and what the tip felt.
+  // Of the step done last: what the law was given, and what the tip felt.
   [[nodiscard]] const LawInput& input() const { return input_; }
-  [[nodiscard]] const JointVector& effort() const { return effort_; }
   [[nodiscard]] const Contact& contact() const { return contact_; }
   /// Of all payloads of the loop up to the step before.
   [[nodiscard]] std::uint64_t chainHash() const { return chain_hash_; }

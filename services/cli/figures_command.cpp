@@ -33,9 +33,10 @@ struct FiguresRequest {
   bool json = false;
 };
 
-/// "27-29" and "30, 31" by each of their numbers, "co-simulation, error" by what stands before the comma.
+/// "27-29" and "30, 31" by each of their numbers, "co-simulation, error" by what stands before the comma: what can be
+/// given to --only, where a comma begins another name.
 std::set<std::string> namesOf(const Figure& figure) {
-  std::set<std::string> names{figure.number, figure.number.substr(0, figure.number.find(','))};
+  std::set<std::string> names{figure.number.substr(0, figure.number.find(','))};
   std::vector<int> numbers;
   bool is_range = false;
   for (std::size_t i = 0; i < figure.number.size();) {
@@ -57,19 +58,20 @@ std::set<std::string> namesOf(const Figure& figure) {
 
 std::vector<Figure> chosen(const std::vector<Figure>& all, const std::vector<std::string>& only) {
   if (only.empty()) return all;
-  std::vector<std::string> known;
+  std::vector<std::string> known;  // in the report's order
   std::vector<Figure> figures;
   for (const Figure& figure : all) {
     const std::set<std::string> names = namesOf(figure);
-    known.insert(known.end(), names.begin(), names.end());
+    for (const std::string& name : names) {
+      if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+    }
     if (std::any_of(only.begin(), only.end(), [&](const auto& name) { return names.contains(name); })) {
       figures.push_back(figure);
     }
   }
   for (const std::string& name : only) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
       throw UsageError(unknownName("figure", name, known));
-    }
   }
   return figures;
 }
@@ -93,8 +95,9 @@ void showProgress(const Figure& figure, double part) {
   if (part > 0.0) std::fprintf(stderr, ": %.0f %%", 100.0 * part);
 }
 
-FigureResult resultOf(const Figure& figure, const std::map<std::string, BatchRun>& runs, const fs::path& out) {
-  FigureResult result{.figure = figure, .drawings = {}, .checks = {}, .failure = {}};
+/// Fills in what is seen of a figure.
+void complete(FigureResult& result, const std::map<std::string, BatchRun>& runs, const fs::path& out) {
+  const Figure& figure = result.figure;
   std::vector<Trace> traces;
   traces.reserve(figure.runs.size());  // the drawings point into it
   std::vector<LabelledRun> labelled;
@@ -102,7 +105,7 @@ FigureResult resultOf(const Figure& figure, const std::map<std::string, BatchRun
     const BatchRun& done = runs.at(run.scenario);
     if (!done.failure.empty()) {
       result.failure = run.scenario + ": " + done.failure;
-      return result;
+      return;
     }
     traces.push_back(readTrace(done.recording));
     labelled.push_back({figure.runs.size() > 1 ? run.label : "", &traces.back()});
@@ -132,16 +135,17 @@ FigureResult resultOf(const Figure& figure, const std::map<std::string, BatchRun
     result.drawings.push_back(stem);
     for (Check& check : made.checks) add(std::move(check), base.label);
   }
-  return result;
 }
 
-/// What goes wrong with one figure is told in its place: the others are still to be seen.
-FigureResult resultOrFailure(const Figure& figure, const std::map<std::string, BatchRun>& runs, const fs::path& out) {
+/// What goes wrong with one figure is told in its place, beside what was seen of it: the others are still to be seen.
+FigureResult resultOf(const Figure& figure, const std::map<std::string, BatchRun>& runs, const fs::path& out) {
+  FigureResult result{.figure = figure, .drawings = {}, .checks = {}, .failure = {}};
   try {
-    return resultOf(figure, runs, out);
+    complete(result, runs, out);
   } catch (const std::exception& error) {
-    return {.figure = figure, .drawings = {}, .checks = {}, .failure = error.what()};
+    result.failure = error.what();
   }
+  return result;
 }
 
 Json toJson(const FigureResult& result) {
@@ -162,7 +166,7 @@ Json toJson(const FigureResult& result) {
 void print(const FigureResult& result) {
   const std::string claim = result.figure.is_study ? "" : std::string("claim ") + toString(result.verdict());
   std::printf("%-25s %-58s %-20s %s\n", result.figure.number.c_str(), result.figure.title.c_str(), claim.c_str(),
-              !result.failure.empty() ? "NOT RUN"
+              !result.failure.empty() ? "NOT COMPLETED"
               : result.agrees()       ? "agrees with theory"
                                       : "DIFFERS FROM THEORY");
   if (!result.failure.empty()) std::printf("  %s\n", result.failure.c_str());
@@ -190,11 +194,12 @@ ExitCode figures(FiguresRequest request) {
   std::vector<FigureResult> results;
   for (const Figure& figure : wanted) {
     showProgress(figure, 0.0);
-    results.push_back(resultOrFailure(figure, runs, out));
+    results.push_back(resultOf(figure, runs, out));
   }
   if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K");
   facts.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  writePage(out, results, list.errata, facts);
+  const fs::path page = out / (request.only.empty() ? "index.html" : "partial.html");
+  writePage(page, results, list.errata, facts);
 
   Json json = Json::array();
   for (const FigureResult& result : results) {
@@ -204,10 +209,9 @@ ExitCode figures(FiguresRequest request) {
       print(result);
     }
   }
-  const std::string page = (out / "index.html").string();
   const auto agreeing = std::count_if(results.begin(), results.end(), [](const auto& one) { return one.agrees(); });
   if (request.json) {
-    std::cout << toText(Json{{"page", page},
+    std::cout << toText(Json{{"page", page.string()},
                              {"elapsed_s", facts.elapsed_s},
                              {"runs", facts.runs},
                              {"reused", facts.reused},
@@ -230,6 +234,7 @@ void addFiguresCommand(CLI::App& app, ExitCode& exit_code) {
       app.add_subcommand("figures", "run the report's scenarios, draw its figures, hold them against theory on a page");
   command->footer(
       "Recordings stay in DIR/recordings and are used again while scenario, robot and build are the same.\n"
+      "The page is DIR/index.html, or with --only DIR/partial.html, which leaves the other as it is.\n"
       "Exit codes: 0 every figure agrees with theory, 1 one does not or could not be run.");
   command->add_option("--only", request->only, "only these figures: 9,10")->delimiter(',')->allow_extra_args(false);
   command->add_option("--out", request->out, "folder for the page, the drawings and the recordings")

@@ -15,7 +15,8 @@ void addMetricsCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("metrics", "errors, efforts and contact forces of a recorded run, in numbers");
   command->footer(
       "Errors are desired minus actual. Overshoot and settling are of the way from where a signal starts to its\n"
-      "set-point; settled means within 2 % of that way for good. A dash: the desired value moves, or there is no way.");
+      "set-point; settled means within 2 % of that way for good. A dash: the desired value moves, there is no way, or\n"
+      "what it takes was not recorded.");
   command->add_option("file", *file, "recording (MCAP)")->required();
   command->add_flag("--json", *json, "print JSON");
   command->callback([=] {

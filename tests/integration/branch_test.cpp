@@ -83,6 +83,7 @@ TEST_F(Branch, TakesAnotherControllerOrOtherValuesFromThere) {
   EXPECT_NE(stiffer.result.at("chain_hash"), original.result.at("chain_hash"));
   const nlohmann::json metrics = bench.batonJson({"metrics", stiffer.file, "--json"});
   EXPECT_EQ(metrics.at("steps"), kShortSteps - 400);
+  EXPECT_DOUBLE_EQ(metrics.at("duration_s"), 0.3) << "of the branch, not from step 0";
 }
 
 TEST_F(Branch, RefusesWhatCannotBeGoneOnWith) {

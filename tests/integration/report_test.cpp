@@ -56,9 +56,16 @@ TEST(Report, AFigureIsRunDrawnAndHeldAgainstTheory) {
     }
   }
   EXPECT_GT(drawings, 0U);
-  const std::string page = readFile(fs::path(out) / "index.html");
+  const std::string page = readFile(fs::path(out) / "partial.html");
   EXPECT_NE(page.find("agrees with theory"), std::string::npos);
-  EXPECT_NE(page.find("What the report has wrong"), std::string::npos);
+  const std::size_t errata = page.find("What the report has wrong");
+  ASSERT_NE(errata, std::string::npos);
+  const std::string standings = page.substr(errata);
+  EXPECT_NE(standings.find("established"), std::string::npos) << "the one that rests on Figure 9";
+  EXPECT_EQ(standings.find("not established"), std::string::npos);
+  EXPECT_NE(standings.find("not run"), std::string::npos) << "those that rest on others";
+  EXPECT_EQ(made.at("page"), (fs::path(out) / "partial.html").string());
+  EXPECT_FALSE(fs::exists(fs::path(out) / "index.html")) << "the page of all figures is another";
 
   // The second time nothing has to be run.
   const nlohmann::json again = bench.batonJson({"figures", "--only", "9", "--out", out, "--json"});
@@ -90,7 +97,7 @@ void write(const fs::path& file, const std::string& text) {
 TEST(Report, ABatchRunsWhatIsNotThereOrNotOfThisExperimentAndNothingElse) {
   Bench bench;
   const fs::path installed = installation(bench), baton = installed / "bin/baton";
-  const fs::path out = bench.folder() / "figures", recordings = out / "recordings", page = out / "index.html";
+  const fs::path out = bench.folder() / "figures", recordings = out / "recordings", page = out / "partial.html";
   const fs::path first = recordings / "fig24_operational_tracking.mcap", second = recordings / "fig24_cubic.mcap";
   const std::vector<std::string> arguments{
       "figures", "--only",     "24",     "--jobs",   "1",
@@ -168,7 +175,7 @@ TEST(Report, TheStudyOfTheCouplingAgreesWithTheory) {
     EXPECT_TRUE(figure.at("agrees")) << figure;
     EXPECT_GE(figure.at("checks").size(), 7U);
   }
-  const std::string page = readFile(out / "index.html");
+  const std::string page = readFile(out / "partial.html");
   EXPECT_NE(page.find("Beyond the report"), std::string::npos);
   for (const char* chart : {"spring_derivatives_coupling_energy", "damped_spring_coupling_stability",
                             "arm_in_springs_coupling_error", "touch_coupling_error"}) {
@@ -182,6 +189,7 @@ TEST(Report, AFigureThatIsNotThereIsNamed) {
   const Finished refused = bench.baton({"figures", "--only", "99", "--out", (bench.folder() / "figures").string()});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_NE(refused.err.find("99"), std::string::npos) << refused.err;
+  EXPECT_EQ(refused.err.find("fixed gravity"), std::string::npos) << "a comma cannot be typed: " << refused.err;
 }
 
 }  // namespace

@@ -18,8 +18,7 @@ Trace emptyTrace(Eigen::Index steps) {
   trace.scenario.robot = rppRobot();
   trace.scenario.robot.joints.resize(1);
   trace.scenario.step_ns = 1'000'000;
-  for (Eigen::MatrixXd* joints :
-       {&trace.q, &trace.qd, &trace.tau, &trace.command, &trace.q_d, &trace.qd_d, &trace.qdd_d})
+  for (Eigen::MatrixXd* joints : {&trace.q, &trace.qd, &trace.tau, &trace.q_d, &trace.qd_d, &trace.qdd_d})
     *joints = Eigen::MatrixXd::Zero(1, steps);
   for (Eigen::MatrixXd* three : {&trace.p_WE, &trace.orientation, &trace.zyz, &trace.zyz_d})
     *three = Eigen::MatrixXd::Zero(3, steps);
@@ -104,6 +103,36 @@ TEST(Metrics, ForcesKeepTheirSign) {
   const Metrics metrics = metricsOf(trace);
   EXPECT_DOUBLE_EQ(metrics.peak_force_N.z(), -7.0);
   EXPECT_DOUBLE_EQ(metrics.final_force_N.z(), 3.0);
+}
+
+TEST(Metrics, WithoutARecordedContactThereIsNoForce) {
+  Trace trace = emptyTrace(100);
+  trace.h_e.setConstant(std::numeric_limits<double>::quiet_NaN());
+  const Metrics metrics = metricsOf(trace);
+  EXPECT_TRUE(metrics.final_force_N.array().isNaN().all());
+  EXPECT_TRUE(metrics.peak_force_N.array().isNaN().all());
+  EXPECT_TRUE(toJson(metrics).at("force_N").at("peak").at(2).is_null());
+  EXPECT_NE(toText(metrics).find("final - - -   peak - - -"), std::string::npos) << toText(metrics);
+}
+
+TEST(Metrics, StepsThatWereNotRecordedAreCountedAndTold) {
+  Trace trace = emptyTrace(100);
+  trace.q_d.setConstant(0.5);
+  for (Eigen::MatrixXd* signal : {&trace.q, &trace.tau}) signal->col(40).setConstant(std::nan(""));
+  trace.q_d.col(99).setConstant(std::nan(""));
+  const Metrics metrics = metricsOf(trace);
+  EXPECT_EQ(metrics.unrecorded_steps, 2U);
+  ASSERT_EQ(metrics.joints.size(), 1U) << "there is a reference, if not at the last step";
+  EXPECT_TRUE(std::isnan(metrics.joints[0].rms));
+  EXPECT_DOUBLE_EQ(metrics.joints[0].peak, 0.5);
+  EXPECT_EQ(toText(metrics).find("0 steps were not recorded"), std::string::npos);
+  EXPECT_NE(toText(metrics).find("2 steps were not recorded"), std::string::npos) << toText(metrics);
+}
+
+TEST(Metrics, TheDurationOfABranchIsItsOwn) {
+  Trace trace = emptyTrace(101);
+  trace.first_step = 400;
+  EXPECT_NEAR(metricsOf(trace).duration_s, 0.1, 1e-12);
 }
 
 TEST(Metrics, AMotionGivenInTaskSpaceHasNoJointErrors) {

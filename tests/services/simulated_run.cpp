@@ -1,5 +1,6 @@
 #include "simulated_run.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
 #include "robot/kinematics.hpp"
@@ -14,14 +15,12 @@ Trace emptyTrace(const Scenario& scenario) {
   trace.scenario = scenario;
   trace.is_complete = true;
   const Eigen::Index n = scenario.robot.size(), steps = static_cast<Eigen::Index>(scenario.end_step) + 1;
-  for (Eigen::MatrixXd* joints :
-       {&trace.q, &trace.qd, &trace.tau, &trace.command, &trace.q_d, &trace.qd_d, &trace.qdd_d})
+  for (Eigen::MatrixXd* joints : {&trace.q, &trace.qd, &trace.tau, &trace.q_d, &trace.qd_d, &trace.qdd_d})
     joints->resize(n, steps);
   for (Eigen::MatrixXd* three : {&trace.p_WE, &trace.p_WE_d, &trace.orientation, &trace.zyz, &trace.zyz_d})
     three->resize(3, steps);
-  trace.h_e.resize(6, steps);
-  trace.h_d.resize(6, steps);
-  trace.holders.assign(static_cast<std::size_t>(steps), scenario.active);
+  for (Eigen::MatrixXd* six : {&trace.V_WE_d, &trace.A_WE_d, &trace.h_d}) six->resize(6, steps);
+  trace.h_e = Eigen::MatrixXd::Constant(6, steps, std::nan(""));
   trace.chain.resize(static_cast<std::size_t>(steps));
   return trace;
 }
@@ -33,7 +32,6 @@ void fill(Trace& trace, Eigen::Index k, const MonolithicRun& run) {
   trace.q.col(k) = state.q;
   trace.qd.col(k) = state.qd;
   trace.tau.col(k) = state.tau_applied;
-  trace.command.col(k) = run.effort();
   trace.q_d.col(k) = reference.q;
   trace.qd_d.col(k) = reference.qd;
   trace.qdd_d.col(k) = reference.qdd;
@@ -42,7 +40,9 @@ void fill(Trace& trace, Eigen::Index k, const MonolithicRun& run) {
   trace.orientation.col(k) = rotationVector(reference.X_WE.R * state.X_WE.R.transpose());
   trace.zyz.col(k) = zyzFromRotation(state.X_WE.R);
   trace.zyz_d.col(k) = zyzFromRotation(reference.X_WE.R);
-  trace.h_e.col(k) = run.contact().h_e;
+  trace.V_WE_d.col(k) = reference.V_WE;
+  trace.A_WE_d.col(k) = reference.A_WE;
+  if (trace.scenario.hasEnvironment()) trace.h_e.col(k) = run.contact().h_e;
   trace.h_d.col(k) = reference.h_d;
 }
 

@@ -149,7 +149,8 @@ LawInfo adaptive() {
                    .choices = {}},
                   {.name = "k",
                    .unit = "",
-                   .doc = "gain of the adaptation, SI units of each parameter: the larger, the slower it learns",
+                   .doc = "gain of the adaptation, SI units of each parameter: the larger, the slower it learns "
+                          "(times_k: the faster)",
                    .size = ParameterSize::kScalar,
                    .default_numbers = {30.2},
                    .minimum = 1e-6,

@@ -2,7 +2,7 @@
 ///   outer  Mt z'' + Kdt z' + Kpt z = h_e,   x_t = x_d - z,
 ///   inner  tau = B(q) y + n(q, qd) + J^T h_e,   y = J^-1 (xdd_t + Kd (xd_t - xd) + Kp (x_t - x) - Jdot qd).
 ///
-/// Source: Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control (2009), sec. 9.3.3.
+/// Source: Siciliano, Sciavicco, Villani, Oriolo, Robotics: Modelling, Planning and Control (2009), sec. 9.3.
 /// Assumes a model without friction and a configuration away from singularities. With the position solver and three
 /// joints x_t - x obeys e'' + Kd e' + Kp e = 0, so that once it is on the frame the tip answers as Mt, Kdt and Kpt say,
 /// however stiff the inner loop must be against disturbances. At rest Kpt z = h_e and x = x_d - z.

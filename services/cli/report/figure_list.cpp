@@ -27,13 +27,11 @@ FigureRun readRun(const YamlNode& node) {
 }
 
 CheckRequest readCheck(const YamlNode& node, std::size_t runs) {
-  const YamlMap check = node.map({"name", "run", "other", "tolerance"});
+  const YamlMap check = node.map({"name", "run", "other"});
   const auto last = static_cast<std::int64_t>(runs) - 1;
-  CheckRequest read{.name = known(check["name"], "check", checkNames()), .other = {}, .tolerance = {}};
+  CheckRequest read{.name = known(check["name"], "check", checkNames()), .other = {}};
   read.run = static_cast<int>(check.integerOr("run", 0, last, 0));
   if (const auto other = check.find("other")) read.other = static_cast<int>(other->integer(0, last));
-  if (const auto tolerance = check.find("tolerance"))
-    read.tolerance = tolerance->number({.minimum = 0.0, .unit = {}, .open = true});
   return read;
 }
 
@@ -84,12 +82,19 @@ Figure readStudy(const YamlNode& node) {
   return figure;
 }
 
-Erratum readErratum(const YamlNode& node) {
-  const YamlMap map = node.map({"where", "printed", "right", "evidence"});
-  return {.where = map["where"].text(kMaxText),
-          .printed = map["printed"].text(kMaxText),
-          .right = map["right"].text(kMaxText),
-          .evidence = map["evidence"].text(kMaxText)};
+Erratum readErratum(const YamlNode& node, const std::vector<Figure>& figures) {
+  const YamlMap map = node.map({"where", "printed", "right", "evidence", "figures"});
+  Erratum erratum{.where = map["where"].text(kMaxText),
+                  .printed = map["printed"].text(kMaxText),
+                  .right = map["right"].text(kMaxText),
+                  .evidence = map["evidence"].text(kMaxText),
+                  .figures = {}};
+  std::vector<std::string> numbers;
+  for (const Figure& figure : figures) numbers.push_back(figure.number);
+  if (const auto named = map.find("figures")) {
+    for (const YamlNode& one : named->list(1, 8)) erratum.figures.push_back(known(one, "figure", numbers));
+  }
+  return erratum;
 }
 
 }  // namespace
@@ -99,7 +104,9 @@ FigureList readFigureList(const std::filesystem::path& file) {
   FigureList list;
   for (const YamlNode& figure : map["figures"].list(1, kMaxEntries)) list.figures.push_back(readFigure(figure));
   for (const YamlNode& study : map["studies"].list(0, kMaxEntries)) list.figures.push_back(readStudy(study));
-  for (const YamlNode& erratum : map["errata"].list(0, kMaxEntries)) list.errata.push_back(readErratum(erratum));
+  for (const YamlNode& erratum : map["errata"].list(0, kMaxEntries)) {
+    list.errata.push_back(readErratum(erratum, list.figures));
+  }
   return list;
 }
 

@@ -43,7 +43,8 @@ struct Erratum {
   std::string where;  // section, equation or figure of the report
   std::string printed;
   std::string right;
-  std::string evidence;  // which figure of ours shows it
+  std::string evidence;              // what shows it
+  std::vector<std::string> figures;  // on which that rests, by their numbers; none: on tests, or on looking
 };
 
 struct FigureList {

@@ -89,9 +89,14 @@ Metrics metricsOf(const Trace& trace) {
   const double dt_s = trace.scenario.stepSeconds();
   Metrics m;
   m.steps = static_cast<std::uint64_t>(trace.last());
-  m.duration_s = trace.time(trace.last());
+  m.duration_s = trace.time(trace.last()) - trace.time(0);
   m.missed_steps = trace.missed_steps;
-  const bool has_joints = !std::isnan(trace.q_d(0, trace.last()));
+  const auto isUnrecorded = [](const Eigen::MatrixXd& signal) { return signal.row(0).array().isNaN().eval(); };
+  auto unrecorded = isUnrecorded(trace.q);
+  const bool has_joints = !isUnrecorded(trace.q_d).all(), has_task = !isUnrecorded(trace.p_WE_d).all();
+  if (has_joints) unrecorded = unrecorded || isUnrecorded(trace.q_d);
+  if (has_task) unrecorded = unrecorded || isUnrecorded(trace.p_WE_d);
+  m.unrecorded_steps = static_cast<std::uint64_t>(unrecorded.count());
   for (int i = 0; i < robot.size(); ++i) {
     const Joint& joint = robot.joints[static_cast<std::size_t>(i)];
     const bool turns = joint.kind == JointKind::kRevolute;
@@ -106,7 +111,7 @@ Metrics metricsOf(const Trace& trace) {
     }
     m.efforts.push_back(effort);
   }
-  if (!std::isnan(trace.p_WE_d(0, trace.last()))) {
+  if (has_task) {
     for (int i = 0; i < 3; ++i) {
       m.task.push_back(errorMetrics(std::string(1, "xyz"[i]), "m", trace.p_WE_d.row(i), trace.p_WE.row(i), dt_s));
     }
@@ -117,19 +122,21 @@ Metrics metricsOf(const Trace& trace) {
     turned.overshoot = turned.settling_s = kNan;
     m.task.push_back(std::move(turned));
   }
-  if (trace.scenario.hasEnvironment()) {
-    m.final_force_N = trace.h_e.col(trace.last()).head<3>();
-    for (int i = 0; i < 3; ++i) {
-      Eigen::Index at = 0;
-      trace.h_e.row(i).cwiseAbs().maxCoeff(&at);
-      m.peak_force_N[i] = trace.h_e(i, at);
+  m.final_force_N = trace.h_e.col(trace.last()).head<3>();
+  for (int i = 0; i < 3; ++i) {
+    for (Eigen::Index k = 0; k < trace.steps(); ++k) {
+      const double force = trace.h_e(i, k);
+      if (std::isnan(m.peak_force_N[i]) || std::abs(force) > std::abs(m.peak_force_N[i])) m.peak_force_N[i] = force;
     }
   }
   return m;
 }
 
 nlohmann::ordered_json toJson(const Metrics& m) {
-  nlohmann::ordered_json json{{"steps", m.steps}, {"duration_s", m.duration_s}, {"missed_steps", m.missed_steps}};
+  nlohmann::ordered_json json{{"steps", m.steps},
+                              {"unrecorded_steps", m.unrecorded_steps},
+                              {"duration_s", m.duration_s},
+                              {"missed_steps", m.missed_steps}};
   json["joints"] = nlohmann::ordered_json::array();
   for (const ErrorMetrics& joint : m.joints) json["joints"].push_back(toJson(joint));
   json["task"] = nlohmann::ordered_json::array();
@@ -139,13 +146,19 @@ nlohmann::ordered_json toJson(const Metrics& m) {
     json["efforts"].push_back(
         {{"name", effort.name}, {"unit", effort.unit}, {"peak", effort.peak}, {"saturated_s", effort.saturated_s}});
   }
-  json["force_N"] = {{"final", {m.final_force_N[0], m.final_force_N[1], m.final_force_N[2]}},
-                     {"peak", {m.peak_force_N[0], m.peak_force_N[1], m.peak_force_N[2]}}};
+  const auto threeOf = [](const Vector3& v) {
+    return nlohmann::ordered_json{orNull(v[0]), orNull(v[1]), orNull(v[2])};
+  };
+  json["force_N"] = {{"final", threeOf(m.final_force_N)}, {"peak", threeOf(m.peak_force_N)}};
   return json;
 }
 
 std::string toText(const Metrics& m) {
   std::string text = fmt::format("{} steps, {:.4f} s, {} missed\n", m.steps, m.duration_s, m.missed_steps);
+  if (m.unrecorded_steps > 0) {
+    text += fmt::format("{} steps were not recorded: what is unknown without them is a dash, peaks are of the others\n",
+                        m.unrecorded_steps);
+  }
   addRows(m.joints, "joints", text);
   addRows(m.task, "tip", text);
   text += fmt::format("{:<14}{:>13}{:>15}\n", "efforts", "peak", "saturated [s]");
@@ -153,8 +166,10 @@ std::string toText(const Metrics& m) {
     text += fmt::format("  {:<12}{:>13.4e}{:>15.4f}\n", effort.name + " [" + effort.unit + "]", effort.peak,
                         effort.saturated_s);
   }
-  text += fmt::format("force [N]     final {:.6f} {:.6f} {:.6f}   peak {:.6f} {:.6f} {:.6f}\n", m.final_force_N[0],
-                      m.final_force_N[1], m.final_force_N[2], m.peak_force_N[0], m.peak_force_N[1], m.peak_force_N[2]);
+  const auto three = [](const Vector3& v) {
+    return numberText(v[0], "{:.6f}") + ' ' + numberText(v[1], "{:.6f}") + ' ' + numberText(v[2], "{:.6f}");
+  };
+  text += fmt::format("force [N]     final {}   peak {}\n", three(m.final_force_N), three(m.peak_force_N));
   return text;
 }
 

@@ -1,6 +1,7 @@
 /// How well a run went, in numbers: errors of each joint and task axis, efforts, contact force.
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,7 +12,7 @@ namespace baton {
 
 /// Of one error signal e = desired - actual over the run. A set-point y1, reached from the actual value y0 at the
 /// start, makes a stroke |y1 - y0|; where the desired value moves, or there is no stroke, overshoot and settling are
-/// NaN.
+/// NaN. Where steps were not recorded the integrals are NaN, and peaks are of what was recorded.
 struct ErrorMetrics {
   std::string name;         // "q1", "x"
   std::string unit;         // of the error
@@ -32,12 +33,14 @@ struct EffortMetrics {
 
 struct Metrics {
   std::uint64_t steps = 0;
+  std::uint64_t unrecorded_steps = 0;  // in between, without their state or their reference
   double duration_s = 0.0;
   std::vector<ErrorMetrics> joints;  // empty when no joint reference was given
   std::vector<ErrorMetrics> task;    // x, y, z, and the angle between the orientations; empty without a task reference
   std::vector<EffortMetrics> efforts;
-  Vector3 final_force_N = Vector3::Zero();  // of the tip on the environment
-  Vector3 peak_force_N = Vector3::Zero();   // per axis, with its sign
+  // Of the tip on the environment; NaN when no contact was recorded.
+  Vector3 final_force_N = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+  Vector3 peak_force_N = final_force_N;  // per axis, with its sign
   std::uint64_t missed_steps = 0;
 };
 

@@ -78,6 +78,7 @@ std::string anchorOf(const Figure& figure) {
 }
 
 std::string agreement(const FigureResult& result) {
+  if (!result.failure.empty()) return "<span class='tag partly'>not completed</span>";
   return result.agrees() ? "<span class='tag agrees'>agrees with theory</span>"
                          : "<span class='tag differs'>differs from theory</span>";
 }
@@ -122,18 +123,17 @@ void writeFigure(std::ofstream& page, const FigureResult& result) {
   page << fmt::format("<dt>{}<dd>{}\n", figure.is_study ? "question" : "the report says", escaped(figure.claim));
   page << fmt::format("<dt>theory predicts<dd>{}\n", escaped(figure.theory));
   page << fmt::format("<dt>finding<dd>{} {}\n", figure.is_study ? "" : verdictTag(result),
-                      result.agrees() ? escaped(figure.finding) : "Our runs do not agree with theory here.");
+                      result.agrees()          ? escaped(figure.finding)
+                      : result.failure.empty() ? "Our runs do not agree with theory here."
+                                               : "Something could not be run, measured or drawn.");
   std::string runs;
   for (const FigureRun& run : figure.runs) {
     runs += fmt::format("{}<code>deploy/baton run {}/{}</code>", runs.empty() ? "" : "<br>", escaped(figure.folder),
                         escaped(run.scenario));
   }
   page << fmt::format("<dt>{}<dd>{}\n</dl>\n", figure.runs.size() == 1 ? "scenario" : "scenarios", runs);
-  if (!result.failure.empty()) {
-    page << fmt::format("<p class='tag differs'>not run to its end</p><pre>{}</pre>\n", escaped(result.failure));
-    return;
-  }
   page << "<p>" << agreement(result) << "</p>\n";
+  if (!result.failure.empty()) page << fmt::format("<pre>{}</pre>\n", escaped(result.failure));
   writeChecks(page, result.checks);
   for (const std::string& drawing : result.drawings) {
     page << fmt::format("<p><a href='{0}.png'><img src='{0}.svg' alt='{1}' loading=lazy></a></p>\n", escaped(drawing),
@@ -141,12 +141,25 @@ void writeFigure(std::ofstream& page, const FigureResult& result) {
   }
 }
 
-void writeErrata(std::ofstream& page, const std::vector<Erratum>& errata) {
+/// What this page's runs make of an erratum; it rests on the figures that it names.
+std::string standing(const Erratum& erratum, const std::vector<FigureResult>& results) {
+  if (erratum.figures.empty()) return "no figure";
+  bool is_established = true;
+  for (const std::string& name : erratum.figures) {
+    const auto found =
+        std::find_if(results.begin(), results.end(), [&](const auto& one) { return one.figure.number == name; });
+    if (found == results.end()) return "not run";
+    is_established = is_established && found->agrees();
+  }
+  return is_established ? "<span class=agrees>established</span>" : "<span class='tag differs'>not established</span>";
+}
+
+void writeErrata(std::ofstream& page, const std::vector<Erratum>& errata, const std::vector<FigureResult>& results) {
   page << "<h2 id='errata'>What the report has wrong</h2>\n"
-          "<table><tr><th>where<th>printed<th>right<th>evidence\n";
+          "<table><tr><th>where<th>printed<th>right<th>evidence<th>our runs\n";
   for (const Erratum& erratum : errata) {
-    page << fmt::format("<tr><td>{}<td>{}<td>{}<td>{}\n", escaped(erratum.where), escaped(erratum.printed),
-                        escaped(erratum.right), escaped(erratum.evidence));
+    page << fmt::format("<tr><td>{}<td>{}<td>{}<td>{}<td>{}\n", escaped(erratum.where), escaped(erratum.printed),
+                        escaped(erratum.right), escaped(erratum.evidence), standing(erratum, results));
   }
   page << "</table>\n";
 }
@@ -169,9 +182,8 @@ const char* toString(ClaimVerdict verdict) {
   return "?";
 }
 
-void writePage(const std::filesystem::path& folder, const std::vector<FigureResult>& results,
+void writePage(const std::filesystem::path& file, const std::vector<FigureResult>& results,
                const std::vector<Erratum>& errata, const PageFacts& facts) {
-  const std::filesystem::path file = folder / "index.html";
   std::ofstream page(file, std::ios::binary);
   page << kHead;
   page << "<h1>The report's figures, run again</h1>\n"
@@ -189,7 +201,7 @@ void writePage(const std::filesystem::path& folder, const std::vector<FigureResu
     }
   };
   writeAll(false);
-  writeErrata(page, errata);
+  writeErrata(page, errata, results);
   if (std::any_of(results.begin(), results.end(), [](const auto& result) { return result.figure.is_study; })) {
     page << kStudiesHead;
     writeAll(true);

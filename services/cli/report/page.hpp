@@ -14,7 +14,7 @@ struct FigureResult {
   Figure figure;
   std::vector<std::string> drawings;  // stems of .svg and .png beside the page
   std::vector<Check> checks;
-  std::string failure;  // why there is nothing to see, empty when there is
+  std::string failure;  // why something could not be run, measured or drawn; empty when everything could
 
   /// Everything was measured and agrees with theory.
   [[nodiscard]] bool agrees() const;
@@ -29,8 +29,8 @@ struct PageFacts {
   std::size_t reused = 0;
 };
 
-/// Writes `folder`/index.html. Throws UnavailableError when it cannot.
-void writePage(const std::filesystem::path& folder, const std::vector<FigureResult>& results,
+/// Writes the page, beside the drawings. Throws UnavailableError when it cannot.
+void writePage(const std::filesystem::path& file, const std::vector<FigureResult>& results,
                const std::vector<Erratum>& errata, const PageFacts& facts);
 
 [[nodiscard]] const char* toString(ClaimVerdict verdict);

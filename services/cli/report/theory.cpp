@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "control/nearest_name.hpp"
+#include "robot/kinematics.hpp"
 #include "theory_tools.hpp"
 #include "trajectory/trajectory.hpp"
 
@@ -29,11 +30,13 @@ constexpr Entry kChecks[] = {
     {"bias_offset", theory::biasOffset},
     {"uncompensated_offset", theory::uncompensatedOffset, true},
     {"first_torque", theory::firstTorque},
-    {"saturated_settles", theory::saturatedSettles},
+    {"settling", theory::settling},
     {"tracks", theory::tracks},
+    {"adaptation_effect", theory::adaptationEffect, true},
     {"adaptation_is_inert", theory::adaptationIsInert, true},
     {"adaptation_learns", theory::adaptationLearns},
     {"task_goal", theory::taskGoal},
+    {"no_contact", theory::noContact},
     {"angle_jump", theory::angleJump},
     {"spurious_equilibrium", theory::spuriousEquilibrium},
     {"task_balance", theory::taskBalance},
@@ -82,22 +85,22 @@ std::vector<Check> runCheck(const CheckRequest& request, const std::vector<Trace
   }
   const theory::Inputs inputs{.run = runCalled(request.name, request.run, runs),
                               .other = request.other ? &runCalled(request.name, *request.other, runs) : nullptr};
-  std::vector<Check> checks = entry->check(inputs);
-  if (request.tolerance) {
-    for (Check& check : checks) check.tolerance = *request.tolerance;
-  }
-  return checks;
+  return entry->check(inputs);
 }
 
 Check followsScenario(const Trace& run) {
-  const Trajectory trajectory(run.scenario.robot, run.scenario.trajectory);
+  const RobotModel& robot = run.scenario.robot;
+  const Trajectory trajectory(robot, run.scenario.trajectory);
   theory::Largest worst;
   const auto compare = [&](const auto& wanted, const auto& recorded) {
     worst.add((wanted - recorded).cwiseAbs().template maxCoeff<Eigen::PropagateNaN>());
   };
   Reference wanted;
+  msg::Reference sent;  // an orientation is a quaternion there
   for (Eigen::Index k = 0; k < run.steps(); ++k) {
     trajectory.evaluate(run.time(k), wanted);
+    toMessage({}, wanted, sent);
+    if (!fromMessage(sent, robot.size(), wanted)) worst.add(std::nan(""));
     if (wanted.q.size() > 0) {
       compare(wanted.q, run.q_d.col(k));
       compare(wanted.qd, run.qd_d.col(k));
@@ -105,11 +108,14 @@ Check followsScenario(const Trace& run) {
     }
     if (wanted.has_task) {
       compare(wanted.X_WE.p, run.p_WE_d.col(k));
+      compare(zyzFromRotation(wanted.X_WE.R), run.zyz_d.col(k));
+      compare(wanted.V_WE, run.V_WE_d.col(k));
+      compare(wanted.A_WE, run.A_WE_d.col(k));
       compare(wanted.h_d, run.h_d.col(k));
     }
   }
   return {.what = "largest difference between the recorded reference and the scenario's",
-          .unit = "rad, m or N",
+          .unit = "SI",
           .predicted = 0.0,
           .measured = worst,
           .tolerance = 0.0};

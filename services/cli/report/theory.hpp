@@ -1,6 +1,8 @@
 /// What theory says of a run, held against what its trace shows. Each check predicts from the scenario (law parameters,
-/// robot, walls, trajectory) by an equation that stands beside it, and never calls a law. Where a check reads the
-/// desired motion from the recording, followsScenario() vouches that it is the scenario's.
+/// robot, walls, trajectory) by an equation that stands beside it; what it takes from the product is the robot's
+/// dynamics, which tests hold against other libraries, never a law. Where a check reads the desired motion from the
+/// recording, followsScenario() vouches that it is the scenario's. Two compare the product with itself, and say that
+/// distribution changed nothing rather than that it is right: followsScenario() and same_bytes_in_one_process.
 ///
 /// Tolerances. Where things come to rest: 1e-4 of the predicted value, or 1e-6 where zero is predicted. While they
 /// move: the equations are of continuous time, whereas a law acts once a step and its effort is held, so the arm obeys
@@ -30,10 +32,9 @@ struct Check {
 
 /// What a figure asks for.
 struct CheckRequest {
-  std::string name;                 // out of checkNames()
-  int run = 0;                      // index into the figure's runs
-  std::optional<int> other;         // a second run to compare with, for checks that compare
-  std::optional<double> tolerance;  // instead of each check's own, of the same kind (relative or not)
+  std::string name;          // out of checkNames()
+  int run = 0;               // index into the figure's runs
+  std::optional<int> other;  // a second run to compare with, for checks that compare
 };
 
 [[nodiscard]] std::vector<std::string> checkNames();
@@ -42,7 +43,8 @@ struct CheckRequest {
 /// which the check does not apply.
 [[nodiscard]] std::vector<Check> runCheck(const CheckRequest& request, const std::vector<Trace>& runs);
 
-/// The recorded reference is what the scenario's trajectory says, to the bit, at every step.
+/// The recorded reference is what the scenario's trajectory says, to the bit, at every step: joints, pose of the tip,
+/// its velocity and acceleration, wrench.
 [[nodiscard]] Check followsScenario(const Trace& run);
 
 /// x_F of a run under force control, rebuilt from the recorded forces: Kf (f_d - f_e) + Ki int (f_d - f_e), which

@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "environment/plane.hpp"
 #include "robot/dynamics.hpp"
 #include "robot/kinematics.hpp"
+#include "robot/simulation.hpp"
 #include "theory_tools.hpp"
 
 namespace baton::theory {
@@ -30,6 +32,36 @@ Checks balance(const Trace& run, const Vector3& p) {
 Matrix3 mobility(const RobotModel& robot, const JointVector& q) {
   const Eigen::MatrixXd J = positionJacobian(robot, q);
   return J * inertia(robot, q).llt().solve(JointMatrix(J.transpose()));
+}
+
+/// The acceleration that a law wants of the tip at a step, from what it is told then; it may remember.
+using Wish = std::function<Vector3(const Reference& reference, const Vector3& p, const Vector3& v, const Vector3& h_e)>;
+
+/// Largest distance of the tip from where it is when this is asked of it once a step, and what that takes is held:
+///   tau = B y + n + J_P^T h_e,   J_P y = wish - J_P' qd.
+/// Not theory of continuous time but the same equation sampled, so that only rounding is left between the two, and
+/// every gain is seen.
+Check sampledTip(const Trace& run, const Wish& wish) {
+  constexpr double kRounding_m = 1e-9;
+  const Scenario& scenario = run.scenario;
+  const RobotModel& robot = scenario.robot;
+  const Trajectory trajectory(robot, scenario.trajectory);
+  JointVector q = scenario.start_q, qd = scenario.start_qd, tau;
+  Reference wanted;
+  Kinematics kinematics;
+  Largest worst;
+  for (Eigen::Index k = 0; k <= restStep(run); ++k) {
+    computeKinematics(robot, q, qd, kinematics);
+    const Vector3 p = kinematics.X_WE.p, v = kinematics.V_WE.head<3>();
+    worst.add((p - run.p_WE.col(k)).norm());
+    trajectory.evaluate(run.time(k), wanted);
+    const Contact contact = planesContact(scenario.walls, p, v);
+    const Vector3 a = wish(wanted, p, v, contact.h_e.head<3>()) - kinematics.Jdot_qd.head<3>();
+    const Matrix3 J_P = kinematics.J.topRows<3>();
+    inverseDynamics(robot, q, qd, J_P.partialPivLu().solve(a), contact.h_e, tau);
+    if (!integrateStep(robot, tau, contact, scenario.stepSeconds(), scenario.substeps, q, qd)) worst.add(std::nan(""));
+  }
+  return within("largest distance from the same equation acting once a step", "m", 0.0, worst, kRounding_m);
 }
 
 /// A tip that gives way as m z'' + d z' + k z = h_e at x = x_d - z: where it rests, and what happens on the way.
@@ -111,7 +143,13 @@ Checks impedanceBalance(const Inputs& in) {
   expectLaw(in.run, {"impedance"});
   const Vector3 md = gain<Vector6>(in.run, "md").head<3>(), kd = gain<Vector6>(in.run, "kd").head<3>(),
                 kp = gain<Vector6>(in.run, "kp").head<3>();
-  return yieldingTip(in.run, md, kd, kp, kp.cwiseQuotient(md).minCoeff());
+  Checks checks = yieldingTip(in.run, md, kd, kp, kp.cwiseQuotient(md).minCoeff());
+  checks.push_back(
+      sampledTip(in.run, [&](const Reference& ref, const Vector3& p, const Vector3& v, const Vector3& h_e) {
+        const Vector3 pull = kd.cwiseProduct(ref.V_WE.head<3>() - v) + kp.cwiseProduct(ref.X_WE.p - p) - h_e;
+        return Vector3(ref.A_WE.head<3>() + pull.cwiseQuotient(md));
+      }));
+  return checks;
 }
 
 // tau = B y + n - J^T h_e against a wall that takes J^T h_e again: B y = 2 J^T h_e at rest, J y = Md^-1 Kp x~.
@@ -123,8 +161,26 @@ Checks unforcedImpedanceBalance(const Inputs& in) { return throughTheArm(in.run,
 // Mt z'' + Kdt z' + Kpt z = h_e, and the inner loop, which starts without an error, is on x_d - z.
 Checks admittanceBalance(const Inputs& in) {
   expectLaw(in.run, {"admittance"});
-  return yieldingTip(in.run, gain<Vector3>(in.run, "mt"), gain<Vector3>(in.run, "kdt"), gain<Vector3>(in.run, "kpt"),
-                     gain<Vector6>(in.run, "kp").head<3>().minCoeff());
+  const Vector3 mt = gain<Vector3>(in.run, "mt"), kdt = gain<Vector3>(in.run, "kdt"),
+                kpt = gain<Vector3>(in.run, "kpt"), kp = gain<Vector6>(in.run, "kp").head<3>(),
+                kd = gain<Vector6>(in.run, "kd").head<3>();
+  Checks checks = yieldingTip(in.run, mt, kdt, kpt, kp.minCoeff());
+  Vector3 z = Vector3::Zero(), zd = Vector3::Zero();  // advanced in closed form, h_e held
+  checks.push_back(
+      sampledTip(in.run, [&](const Reference& ref, const Vector3& p, const Vector3& v, const Vector3& h_e) {
+        const Vector3 zdd = (h_e - kdt.cwiseProduct(zd) - kpt.cwiseProduct(z)).cwiseQuotient(mt);
+        Vector3 wish = ref.A_WE.head<3>() - zdd + kd.cwiseProduct(ref.V_WE.head<3>() - zd - v) +
+                       kp.cwiseProduct(ref.X_WE.p - z - p);
+        for (int i = 0; i < 3; ++i) {
+          const double rest = h_e(i) / kpt(i);
+          const FreeResponse next =
+              freeResponse(mt(i), kdt(i), kpt(i), {z(i) - rest, zd(i)}, in.run.scenario.stepSeconds());
+          z(i) = rest + next.e;
+          zd(i) = next.ed;
+        }
+        return wish;
+      }));
+  return checks;
 }
 
 // f_e = f_d along the walls' normals, at the depth that takes; x_e = x_F.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/error.hpp"
 #include "robot/kinematics.hpp"
 #include "theory_tools.hpp"
 
@@ -94,15 +95,30 @@ Checks taskGoal(const Inputs& in) {
   return checks;
 }
 
-// phi and psi jump by pi where q1 passes pi/2, and only there; the position Jacobian is regular, its determinant the
-// tip's distance from the first axis. Holds for arms like the report's, whose first joint alone turns the tip.
+// The walls are where the tip does not come: no force at any step.
+Checks noContact(const Inputs& in) {
+  const Trace& run = in.run;
+  if (!run.scenario.hasEnvironment() || !wallForce(run.scenario, goalOf(run).X_WE.p).isZero(0.0)) {
+    throw UsageError("run " + run.scenario.name + ": expected a wall beyond the goal for this check, found none");
+  }
+  Largest force;
+  for (Eigen::Index k = 0; k <= restStep(run); ++k) force.add(run.h_e.col(k).norm());
+  return {within("largest force on the way", "N", 0.0, force, 0.0)};
+}
+
+// phi and psi jump by pi where q1 passes pi/2, and only there: as often as the scenario's motion takes it there, from
+// the start to the first set-point and on. Holds for arms like the report's, whose first joint alone turns the tip.
 Checks angleJump(const Inputs& in) {
   const Trace& run = in.run;
-  const RobotModel& robot = run.scenario.robot;
   int jumps = 0, crossings = 0;
+  double before = std::cos(run.scenario.start_q(0));
+  for (Eigen::Index k = 0; k <= restStep(run); ++k) {
+    const double here = std::cos(referenceAt(run, k).q(0));
+    if (before * here < 0.0) ++crossings;
+    before = here;
+  }
   Eigen::Index at = -1;  // the step before the first jump
   for (Eigen::Index k = 0; k < restStep(run); ++k) {
-    if (std::cos(run.q(0, k)) * std::cos(run.q(0, k + 1)) < 0.0) ++crossings;
     if (std::abs(angleBetween(run.zyz(0, k), run.zyz(0, k + 1))) < kPi / 2.0) continue;
     ++jumps;
     if (at < 0) at = k;
@@ -118,14 +134,6 @@ Checks angleJump(const Inputs& in) {
   checks.push_back(within("jump of psi", "rad", kPi, turn(2), 1e-6));
   checks.push_back(within("change of theta meanwhile", "rad", 0.0, turn(1), moved));
   checks.push_back(within("q1 at the jump", "rad", kPi / 2.0, run.q(0, at), moved));
-  Kinematics kinematics;
-  const JointVector q = run.q.col(at);
-  computeKinematics(robot, q, JointVector::Zero(robot.size()), kinematics);
-  const Vector3 arm = kinematics.X_WE.p - kinematics.X_WL[0].p, axis = kinematics.X_WL[0].R.col(2);
-  const Eigen::MatrixXd J_P = positionJacobian(robot, q);
-  const double determinant = std::sqrt((J_P * J_P.transpose()).determinant());
-  checks.push_back(relative("|det J_P| there: the tip's distance from the first axis", "m",
-                            (arm - axis.dot(arm) * axis).norm(), determinant, 1e-6));
   return checks;
 }
 
@@ -167,6 +175,10 @@ Checks taskBalance(const Inputs& in) {
   for (int i = 0; i < 6; ++i) {
     checks.push_back(atRest(std::string("error of ") + kNames[static_cast<std::size_t>(i)] + " at rest",
                             i < 3 ? "m" : "rad", predicted(i), measured(i)));
+  }
+  for (int i = 0; i < robot.size(); ++i) {
+    checks.push_back(atRest("error of " + jointName(i) + " at rest", jointUnit(robot, i), goal.q(i) - q(i),
+                            goal.q(i) - run.q(i, restStep(run))));
   }
   for (Check& force : wallForcesAtRest(run, tipPose(robot, q).p)) checks.push_back(std::move(force));
   return checks;

@@ -107,16 +107,18 @@ using Checks = std::vector<Check>;
 [[nodiscard]] Checks biasOffset(const Inputs& in);
 [[nodiscard]] Checks uncompensatedOffset(const Inputs& in);
 [[nodiscard]] Checks firstTorque(const Inputs& in);
-[[nodiscard]] Checks saturatedSettles(const Inputs& in);
+[[nodiscard]] Checks settling(const Inputs& in);
 
 // theory_tracking.cpp
 [[nodiscard]] Checks secondOrderError(const Inputs& in);
 [[nodiscard]] Checks tracks(const Inputs& in);
+[[nodiscard]] Checks adaptationEffect(const Inputs& in);
 [[nodiscard]] Checks adaptationIsInert(const Inputs& in);
 [[nodiscard]] Checks adaptationLearns(const Inputs& in);
 
 // theory_task.cpp
 [[nodiscard]] Checks taskGoal(const Inputs& in);
+[[nodiscard]] Checks noContact(const Inputs& in);
 [[nodiscard]] Checks angleJump(const Inputs& in);
 [[nodiscard]] Checks spuriousEquilibrium(const Inputs& in);
 [[nodiscard]] Checks taskBalance(const Inputs& in);

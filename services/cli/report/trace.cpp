@@ -1,6 +1,5 @@
 #include "trace.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -20,9 +19,17 @@ std::string attachment(const mcap::Reader& reader, const std::string& name, cons
   throw UsageError(file.string() + ": expected the recording of a run, with its " + name + ", found none");
 }
 
-/// How many states there are, and the step of the first.
-std::pair<std::uint64_t, std::uint64_t> statesIn(const mcap::Reader& reader, std::uint64_t begin_ns) {
-  std::uint64_t count = 0, first = 0;
+/// The steps from the first recorded state to the last.
+struct Stretch {
+  std::uint64_t first = 0;
+  Eigen::Index steps = 0;
+};
+
+/// Throws UsageError when there are no states, or when their step numbers cannot be those of a run: a file from
+/// elsewhere may have any.
+Stretch statesIn(const mcap::Reader& reader, std::uint64_t begin_ns, std::int64_t step_ns,
+                 const std::filesystem::path& file) {
+  std::uint64_t count = 0, first = 0, last = 0;
   reader.forEachMessage({.topics = {dds::topics::kPlantState.name},
                          .start_time_ns = begin_ns,
                          .order = mcap::MessageFilter::Order::kFile},
@@ -30,103 +37,87 @@ std::pair<std::uint64_t, std::uint64_t> statesIn(const mcap::Reader& reader, std
                           msg::PlantState state;
                           if (!dds::decode(view.data, state)) return;
                           first = count == 0 ? state.step() : std::min(first, state.step());
+                          last = std::max(last, state.step());
                           ++count;
                         });
-  return {count, first};
+  if (count == 0) throw UsageError(file.string() + ": expected states of a plant, found none");
+  constexpr std::uint64_t kMostMissing = 10;  // times what is there
+  if ((last - first) / kMostMissing > count) {
+    throw UsageError(file.string() + ": expected the states of one stretch of a run, found " + std::to_string(count) +
+                     " of the steps from " + std::to_string(first) + " to " + std::to_string(last));
+  }
+  if (last > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max() / step_ns)) {
+    throw UsageError(file.string() + ": expected steps that have a time in ns, found step " + std::to_string(last) +
+                     " of " + std::to_string(step_ns) + " ns");
+  }
+  return {first, static_cast<Eigen::Index>(last - first) + 1};
 }
 
-Eigen::Quaterniond toEigen(const msg::Quaternion& q) { return {q.w(), q.x(), q.y(), q.z()}; }
-
-/// Fills a trace from the messages of the loop.
+/// Fills a trace from the messages of the loop: states first, then the rest. What a service would refuse counts as not
+/// recorded.
 class Filler {
  public:
-  Filler(Trace& trace, Eigen::Index steps) : trace_(trace), desired_(static_cast<std::size_t>(steps)) {
-    const Eigen::Index n = trace.scenario.robot.size();
+  Filler(Trace& trace, Eigen::Index steps) : trace_(trace), R_WE_(static_cast<std::size_t>(steps), Matrix3::Zero()) {
     const auto make = [&](Eigen::MatrixXd& matrix, Eigen::Index rows) {
       matrix = Eigen::MatrixXd::Constant(rows, steps, std::numeric_limits<double>::quiet_NaN());
     };
-    for (Eigen::MatrixXd* joints :
-         {&trace.q, &trace.qd, &trace.tau, &trace.command, &trace.q_d, &trace.qd_d, &trace.qdd_d})
-      make(*joints, n);
+    for (Eigen::MatrixXd* joints : {&trace.q, &trace.qd, &trace.tau, &trace.q_d, &trace.qd_d, &trace.qdd_d})
+      make(*joints, trace.scenario.robot.size());
     for (Eigen::MatrixXd* three : {&trace.p_WE, &trace.p_WE_d, &trace.orientation, &trace.zyz, &trace.zyz_d})
       make(*three, 3);
-    make(trace.h_d, 6);
-    trace.h_e = Eigen::MatrixXd::Zero(6, steps);
-    trace.holders.resize(static_cast<std::size_t>(steps));
+    for (Eigen::MatrixXd* six : {&trace.V_WE_d, &trace.A_WE_d, &trace.h_e, &trace.h_d}) make(*six, 6);
     trace.chain.resize(static_cast<std::size_t>(steps));
-    actual_.resize(static_cast<std::size_t>(steps));
   }
 
-  void operator()(const msg::PlantState& state) {
-    const Eigen::Index k = column(state.step());
-    if (k < 0) return;
-    fill(state.position(), trace_.q, k);
-    fill(state.velocity(), trace_.qd, k);
-    fill(state.applied_effort(), trace_.tau, k);
-    fill(state.tip_position(), trace_.p_WE, k);
-    actual_[static_cast<std::size_t>(k)] = toEigen(state.tip_orientation());
-    trace_.zyz.col(k) = zyzFromRotation(actual_[static_cast<std::size_t>(k)].toRotationMatrix());
-    trace_.holders[static_cast<std::size_t>(k)] = state.holder().c_str();
-    trace_.chain[static_cast<std::size_t>(k)] = state.chain_hash();
+  void operator()(const msg::PlantState& message) {
+    const Eigen::Index k = column(message.step());
+    RobotState state;
+    if (k < 0 || !fromMessage(message, trace_.scenario.robot.size(), state)) return;
+    trace_.q.col(k) = state.q;
+    trace_.qd.col(k) = state.qd;
+    trace_.tau.col(k) = state.tau_applied;
+    trace_.p_WE.col(k) = state.X_WE.p;
+    trace_.zyz.col(k) = zyzFromRotation(state.X_WE.R);
+    R_WE_[static_cast<std::size_t>(k)] = state.X_WE.R;
+    trace_.chain[static_cast<std::size_t>(k)] = message.chain_hash();
   }
-  void operator()(const msg::Reference& reference) {
-    const Eigen::Index k = column(reference.step());
-    if (k < 0) return;
-    fill(reference.position(), trace_.q_d, k);
-    fill(reference.velocity(), trace_.qd_d, k);
-    fill(reference.acceleration(), trace_.qdd_d, k);
-    if (!reference.has_task()) return;
-    fill(reference.tip_position(), trace_.p_WE_d, k);
-    desired_[static_cast<std::size_t>(k)] = toEigen(reference.tip_orientation());
-    trace_.zyz_d.col(k) = zyzFromRotation(desired_[static_cast<std::size_t>(k)]->toRotationMatrix());
-    for (int i = 0; i < 3; ++i) {
-      trace_.h_d(i, k) = reference.force()[static_cast<std::size_t>(i)];
-      trace_.h_d(3 + i, k) = reference.moment()[static_cast<std::size_t>(i)];
+  void operator()(const msg::Reference& message) {
+    const Eigen::Index k = column(message.step());
+    Reference reference;
+    if (k < 0 || !fromMessage(message, trace_.scenario.robot.size(), reference)) return;
+    if (reference.q.size() > 0) {
+      trace_.q_d.col(k) = reference.q;
+      trace_.qd_d.col(k) = reference.qd;
+      trace_.qdd_d.col(k) = reference.qdd;
     }
+    if (!reference.has_task) return;
+    trace_.p_WE_d.col(k) = reference.X_WE.p;
+    trace_.zyz_d.col(k) = zyzFromRotation(reference.X_WE.R);
+    trace_.V_WE_d.col(k) = reference.V_WE;
+    trace_.A_WE_d.col(k) = reference.A_WE;
+    trace_.h_d.col(k) = reference.h_d;
+    const Matrix3& R_WE = R_WE_[static_cast<std::size_t>(k)];
+    if (!R_WE.isZero(0.0)) trace_.orientation.col(k) = rotationVector(reference.X_WE.R * R_WE.transpose());
   }
-  void operator()(const msg::Contact& contact) {
-    const Eigen::Index k = column(contact.step());
-    if (k < 0) return;
-    for (int i = 0; i < 3; ++i) {
-      trace_.h_e(i, k) = contact.force()[static_cast<std::size_t>(i)];
-      trace_.h_e(3 + i, k) = contact.moment()[static_cast<std::size_t>(i)];
-    }
-  }
-  void operator()(const msg::JointCommand& command) {
-    const Eigen::Index k = column(command.step());
-    // At the first step of a handover the outgoing controller commands as well.
-    if (k >= 0 && trace_.holders[static_cast<std::size_t>(k)] == command.controller().c_str())
-      fill(command.effort(), trace_.command, k);
+  void operator()(const msg::Contact& message) {
+    const Eigen::Index k = column(message.step());
+    Contact contact;
+    if (k >= 0 && fromMessage(message, contact)) trace_.h_e.col(k) = contact.h_e;
   }
   void operator()(const msg::SwapOutcome& outcome) {
     if (outcome.done()) trace_.swaps.push_back(outcome);
   }
   void operator()(const msg::SimStatus& status) { trace_.missed_steps = status.missed_steps(); }
 
-  void finish() {
-    for (Eigen::Index k = 0; k < trace_.steps(); ++k) {
-      const auto& desired = desired_[static_cast<std::size_t>(k)];
-      if (!desired) continue;
-      trace_.orientation.col(k) =
-          rotationVector((*desired * actual_[static_cast<std::size_t>(k)].conjugate()).normalized().toRotationMatrix());
-    }
-  }
-
  private:
-  /// The column of a step; -1 for one that the file cannot have, or that comes after the last state.
+  /// The column of a step; -1 for one before the first state or after the last.
   [[nodiscard]] Eigen::Index column(std::uint64_t step) const {
     const std::uint64_t k = step - trace_.first_step;  // of an earlier step: a large number
-    return k < static_cast<std::uint64_t>(trace_.q.cols()) ? static_cast<Eigen::Index>(k) : -1;
-  }
-  template <class Numbers>
-  static void fill(const Numbers& numbers, Eigen::MatrixXd& matrix, Eigen::Index k) {
-    if (static_cast<Eigen::Index>(numbers.size()) != matrix.rows()) return;
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i) matrix(i, k) = numbers[static_cast<std::size_t>(i)];
+    return k < static_cast<std::uint64_t>(trace_.steps()) ? static_cast<Eigen::Index>(k) : -1;
   }
 
   Trace& trace_;
-  std::vector<std::optional<Eigen::Quaterniond>> desired_;
-  std::vector<Eigen::Quaterniond> actual_;
+  std::vector<Matrix3> R_WE_;  // zero where no state was recorded
 };
 
 /// Reads the messages of these topics in one pass over the file.
@@ -151,14 +142,14 @@ Trace readTrace(const std::filesystem::path& file) {
                                  file.string() + "#robot.yaml", robot_text);
   trace.is_complete = isCertified(reader);
   const std::uint64_t begin_ns = lastTakeBegin(reader);
-  const auto [steps, first_step] = statesIn(reader, begin_ns);
-  trace.first_step = first_step;
-  if (steps == 0) throw UsageError(file.string() + ": expected states of a plant, found none");
-  Filler filler(trace, static_cast<Eigen::Index>(steps));
-  read(reader, begin_ns, filler, dds::topics::kPlantState);  // first: whose command counts is what the states say
-  read(reader, begin_ns, filler, dds::topics::kReference, dds::topics::kContact, dds::topics::kJointCommand,
-       dds::topics::kSwapOutcome, dds::topics::kSimStatus);
-  filler.finish();
+  const Stretch stretch = statesIn(reader, begin_ns, trace.scenario.step_ns, file);
+  trace.first_step = stretch.first;
+  Filler filler(trace, stretch.steps);
+  read(reader, begin_ns, filler, dds::topics::kPlantState);
+  read(reader, begin_ns, filler, dds::topics::kReference, dds::topics::kContact, dds::topics::kSwapOutcome,
+       dds::topics::kSimStatus);
+  if (trace.q.array().isNaN().all())
+    throw UsageError(file.string() + ": expected states of its robot, found those of another");
   return trace;
 }
 

@@ -39,7 +39,7 @@ void Programs::start(const std::string& program, std::vector<std::string> argume
           .name = program, .program = siblingProgram(program), .arguments = std::move(arguments), .log_file = log},
       [this, log](Child& child, const Child::End& end) {
         if (end.by_signal || end.value != 0) {
-          problem_ = child.name() + " ended with " + end.text() + "; its last words:\n" + lastLines(log, 8);
+          problem_ = child.name() + " ended with " + end.text() + "; its last words:\n" + lastLines(log, 20);
         }
       }));
 }

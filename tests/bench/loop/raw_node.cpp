@@ -29,7 +29,7 @@ DomainParticipantQos participantQos(bool shared_memory) {
   }
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
   discovery.leaseDuration_announcementperiod = {0, 100'000'000};
-  discovery.leaseDuration = {20, 0};
+  discovery.leaseDuration = {3600, 0};
   discovery.initial_announcements.count = 5;
   discovery.initial_announcements.period = {0, 20'000'000};
   return qos;

@@ -1,7 +1,8 @@
 // A law is an equation of continuous time; what runs is sampled. It acts once a step and its effort is held, so that
 // what acts on the arm is older than the state by half a step on average. As the step shrinks the sampled loop must
 // therefore tend to the continuous law in first order: half the step, half the error. Nothing here names a law but
-// where its default gains would not let it move: a law joins by being registered.
+// where its default gains would not let it move: a law joins by being registered. What the limit of a law with state
+// is, this test cannot say: each such law has an equation of its own to be held against, in its own test.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -188,7 +189,7 @@ TEST_P(Convergence, SampledLawTendsToTheContinuousOneInFirstOrder) {
   const Eigen::MatrixXd one = sampled(s, steps, 1), half = sampled(s, steps, 2), quarter = sampled(s, steps, 4);
   if (hasState(s, steps)) {
     // Its state is its own, so nobody can evaluate it between steps. Much finer steps stand for the limit, and two of
-    // them, extrapolated, are without their own error of first order.
+    // them, extrapolated, are without their own error of first order. That it converges is seen, not to what.
     const Eigen::MatrixXd limit = 2.0 * sampled(s, steps, 32) - sampled(s, steps, 16);
     expectOrder(1, largest(one - limit), largest(half - limit), largest(quarter - limit));
     return;

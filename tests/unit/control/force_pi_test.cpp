@@ -9,9 +9,9 @@ namespace {
 
 using namespace test;
 
-constexpr double kKp = 100.0, kKi = 0.2;  // the report's values and the law's defaults
-constexpr double kKe = 100.0;             // N/m
-constexpr double kStep = 5e-4;            // s
+constexpr double kKp = 100.0, kKd = 30.0, kKf = 0.05, kKi = 0.2;  // the report's values and the law's defaults
+constexpr double kKe = 100.0;                                     // N/m
+constexpr double kStep = 5e-4;                                    // s
 const JointVector kStart = Vector3(kPi / 6, 0.2, 0.0);
 
 Reference forceReference(const Vector3& f_d) {
@@ -59,6 +59,44 @@ TEST(ForcePi, StartsWithoutALeap) {
   ClosedLoop loop = forceLoop(robot, {1.0, -2.0, 3.0});
   ASSERT_TRUE(loop.step());
   EXPECT_LT((loop.tau - gravityAt(robot, kStart)).norm(), 1e-12);
+}
+
+/// Largest distance over 1 s between the simulated height and
+///   x'' = -Kd x' + Kp (Kf (f_d - f_e) + w - x),   w' = Ki (f_d - f_e),   f_e = Ke (x - z_r),
+/// integrated finely. The arm starts at rest and in contact, x_F on the tip, and stays in contact.
+double discrepancy(double dt_s) {
+  static constexpr double kForce = 3.0;
+  ClosedLoop loop(rppRobot(), makeLaw("force_pi", rppRobot(), {}), dt_s, Vector3(kPi / 6, 0.2, 0.1), [](double) {
+    return forceReference({0.0, 0.0, kForce});
+  });
+  loop.Ke_N_per_m = kKe;
+  const auto forceError = [](double height) { return kForce - kKe * (height - kWallHeight); };
+  const auto rate = [&](const Vector3& s) {  // height, its rate, w
+    return Vector3(s(1), -kKd * s(1) + kKp * (kKf * forceError(s(0)) + s(2) - s(0)), kKi * forceError(s(0)));
+  };
+  const double start = loop.tip().z();
+  Vector3 s(start, 0.0, start - kKf * forceError(start));
+  double largest = 0.0;
+  while (loop.time_s < 1.0) {
+    EXPECT_TRUE(loop.step());
+    constexpr int kFine = 4;  // RK4 at a quarter of a millisecond and less: 1e-12
+    const double h = dt_s / kFine;
+    for (int i = 0; i < kFine; ++i) {
+      const Vector3 k1 = rate(s), k2 = rate(s + 0.5 * h * k1), k3 = rate(s + 0.5 * h * k2), k4 = rate(s + h * k3);
+      s += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    }
+    EXPECT_GT(loop.tip().z(), kWallHeight);
+    largest = std::max(largest, std::abs(loop.tip().z() - s(0)));
+  }
+  EXPECT_GT(std::abs(loop.tip().z() - start), 1e-3) << "something must have moved";
+  return largest;
+}
+
+TEST(ForcePi, HeightFollowsItsLinearEquationToFirstOrderInTheStep) {
+  const double one = discrepancy(1e-3), half = discrepancy(5e-4), quarter = discrepancy(2.5e-4);
+  EXPECT_LT(half, 1e-4);
+  EXPECT_NEAR(one / half, 2.0, 0.15);
+  EXPECT_NEAR(half / quarter, 2.0, 0.1);
 }
 
 TEST(ForcePi, DriftsSteadilyWhereNothingPushesBack) {

@@ -60,6 +60,21 @@ TEST(TipPose, GivesTheDigitsOfTheReport) {
   EXPECT_LT((x_d - Vector3(0.5629, -0.66, 0.725)).cwiseAbs().maxCoeff(), kPrinted);
 }
 
+TEST(TipPose, OfTheMisprintedAlphaIsInTheSamePlaceWithAnotherOrientation) {
+  // In distal DH the last alpha turns the tip's frame about its own x axis: the printed position says nothing of it,
+  // the printed orientation decides.
+  RobotModel misprinted = test::rppRobot();
+  misprinted.joints[2].dh.alpha_rad = kPi / 2;
+  const Pose right = tipPose(test::rppRobot(), kReportQ), wrong = tipPose(misprinted, kReportQ);
+  EXPECT_LT((wrong.p - right.p).norm(), 1e-15);
+  Matrix3 R;
+  R << 0.0, 0.5000, 0.8660,  //
+      1.0, 0.0, 0.0,         //
+      0.0, 0.8660, -0.5000;
+  EXPECT_LT((wrong.R - R).cwiseAbs().maxCoeff(), kPrinted);
+  EXPECT_GT((wrong.R - right.R).norm(), 1.0);
+}
+
 TEST(TipPose, OfTheRppIsItsClosedForm) {
   const RobotModel robot = test::rppRobot();
   std::mt19937 generator(1);
