@@ -6,6 +6,7 @@
 
 #include "dds/types.hpp"
 #include "msg/checkpoint.h"
+#include "msg/decision.h"
 #include "msg/loop.h"
 #include "msg/parameter.h"
 #include "msg/record.h"
@@ -52,6 +53,9 @@ inline constexpr Topic<msg::SwapReport>       kSwapReport      {"swap_report",  
 inline constexpr Topic<msg::BatonStatus>      kBatonStatus     {"baton_status",      "baton::msg::BatonStatus",      Profile::kStatus};
 inline constexpr Topic<msg::ControllerStatus> kControllerStatus{"controller_status", "baton::msg::ControllerStatus", Profile::kStatus};
 inline constexpr Topic<msg::ParameterStatus>  kParameterStatus {"parameter_status",  "baton::msg::ParameterStatus",  Profile::kStatus};
+inline constexpr Topic<msg::ParameterRequest> kParameterRequest{"parameter_request", "baton::msg::ParameterRequest", Profile::kRequest};
+inline constexpr Topic<msg::ParameterReply>   kParameterReply  {"parameter_reply",   "baton::msg::ParameterReply",   Profile::kEvent};
+inline constexpr Topic<msg::Decision>         kDecision        {"decision",          "baton::msg::Decision",         Profile::kEvent};
 inline constexpr Topic<msg::ServiceStatus>    kServiceStatus   {"service_status",    "baton::msg::ServiceStatus",    Profile::kStatus};
 inline constexpr Topic<msg::ServiceManifest>  kServiceManifest {"service_manifest",  "baton::msg::ServiceManifest",  Profile::kEvent};
 inline constexpr Topic<msg::Event>            kEvent           {"event",             "baton::msg::Event",            Profile::kEvent};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "msg/checkpoint.h"
+#include "msg/decision.h"
 #include "msg/loop.h"
 #include "msg/parameter.h"
 #include "msg/record.h"
@@ -268,6 +269,43 @@ inline void fill(msg::ParameterStatus& m) {
   m.law(fullName());
   m.parameters().resize(msg::MAX_PARAMETERS);
   for (msg::Parameter& parameter : m.parameters()) fill(parameter);
+}
+
+inline void fill(msg::ParameterValue& m) {
+  m.name(fullName());
+  m.numbers(fullSequence());
+  m.word(fullName());
+}
+
+inline void fill(msg::ParameterRequest& m) {
+  m.request_id(kId);
+  m.controller(fullName());
+  m.at_step(kId);
+  m.values().resize(msg::MAX_PARAMETERS);
+  for (msg::ParameterValue& value : m.values()) fill(value);
+}
+
+inline void fill(msg::ParameterReply& m) {
+  m.request_id(kId);
+  m.controller(fullName());
+  m.accepted(true);
+  m.at_step(kId);
+  m.reason(std::string(400, 'r'));
+}
+
+inline void fill(msg::Decision& m) {
+  m.step(kId);
+  m.take(7);
+  m.cause(msg::DECISION_END);
+  m.controller(fullName());
+  m.at_step(kId);
+  m.force(true);
+  m.hard(true);
+  m.blend_steps(kId);
+  m.commanded(true);
+  m.values().resize(msg::MAX_PARAMETERS);
+  for (msg::ParameterValue& value : m.values()) fill(value);
+  m.reason(std::string(200, 'r'));
 }
 
 inline void fill(msg::ServiceStatus& m) {
