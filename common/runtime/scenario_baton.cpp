@@ -32,12 +32,13 @@ void readBaton(const YamlMap& map, Scenario& scenario) {
   // At 1 kHz a request then takes effect within 5 ms: it waits for the next step, the margin, and no more.
   if (scenario.mode == SimMode::kRealtime) scenario.baton.margin_steps = 3;
   if (const auto node = map.find("baton")) {
-    const YamlMap baton = node->map({"margin_steps", "blend_s", "max_effort_step", "max_effort_rate", "fallback"});
+    const YamlMap baton =
+        node->map({"margin_steps", "blend_s", "max_effort_step", "max_effort_rate", "max_command", "fallback"});
     BatonConfig& config = scenario.baton;
-    config.margin_steps =
-        static_cast<std::uint64_t>(baton.integerOr("margin_steps", 1, 1000, config.margin_steps));
+    config.margin_steps = static_cast<std::uint64_t>(baton.integerOr("margin_steps", 1, 1000, config.margin_steps));
     config.max_effort_step =
         baton.numberOr("max_effort_step", {0.0, 1e9, "N m or N", true}, scenario.baton.max_effort_step);
+    config.max_command = baton.numberOr("max_command", {0.0, 1e9, "N m or N", true}, config.max_command);
     if (const auto rate = baton.find("max_effort_rate")) {
       config.max_effort_rate = readJointsOrOne(*rate, kEffortRate, scenario.robot.size());
     }
@@ -67,9 +68,12 @@ void readSwaps(const YamlMap& map, Scenario& scenario) {
   };
   std::string holder = scenario.active;
   for (const YamlNode& item : node->list(0, kMaxSwaps)) {
-    const YamlMap map_of_swap = item.map({"at_s", "to"});
+    const YamlMap map_of_swap = item.map({"at_s", "to", "expect"});
     const YamlNode at_s = map_of_swap["at_s"];
-    const PlannedSwap swap{readSteps(at_s, scenario), readMember(map_of_swap["to"], scenario)};
+    PlannedSwap swap{readSteps(at_s, scenario), readMember(map_of_swap["to"], scenario)};
+    if (const auto expect = map_of_swap.find("expect")) {
+      swap.is_to_be_refused = expect->oneOf<bool>({{"done", false}, {"refused", true}});
+    }
     if (scenario.swaps.empty()) {
       const std::uint64_t earliest = baton.margin_steps + 2;
       if (swap.at_step < earliest) at_s.refuse("a time not before " + in_words(earliest) + ", margin_steps + 2");
@@ -80,8 +84,10 @@ void readSwaps(const YamlMap& map, Scenario& scenario) {
     if (scenario.end_step > 0 && swap.at_step >= scenario.end_step) {
       at_s.refuse("a time before the end of the run, " + in_words(scenario.end_step));
     }
-    if (swap.to == holder) map_of_swap["to"].refuse("a controller that does not hold the baton already");
-    holder = swap.to;
+    if (!swap.is_to_be_refused) {
+      if (swap.to == holder) map_of_swap["to"].refuse("a controller that does not hold the baton already");
+      holder = swap.to;
+    }
     scenario.swaps.push_back(swap);
   }
 }

@@ -46,6 +46,8 @@ decltype(auto) at(const YamlNode& node, const Read& read) {
 /// has everything else already.
 void readBaton(const YamlMap& map, Scenario& scenario);
 void readSwaps(const YamlMap& map, Scenario& scenario);
+/// The faults that are wanted, likewise.
+void readFaults(const YamlMap& map, Scenario& scenario);
 
 /// The walls of an environment.
 [[nodiscard]] std::vector<PlaneSpec> readWalls(const YamlNode& node);

@@ -99,7 +99,8 @@ std::string swapsText(const Scenario& scenario, const Keep& keep, const std::str
   std::string text = more;
   for (const PlannedSwap& swap : scenario.swaps) {
     if (keep(swap.at_step))
-      text += (text.empty() ? "" : ", ") + ("{at_s: " + seconds(swap.at_step, scenario)) + ", to: " + swap.to + "}";
+      text += (text.empty() ? "" : ", ") + ("{at_s: " + seconds(swap.at_step, scenario)) + ", to: " + swap.to +
+              (swap.is_to_be_refused ? ", expect: refused}" : "}");
   }
   return "[" + text + "]";
 }

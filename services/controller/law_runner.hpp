@@ -11,6 +11,7 @@
 
 #include "control/law.hpp"
 #include "runtime/checkpoint.hpp"
+#include "runtime/loop_output.hpp"
 #include "runtime/service.hpp"
 #include "time/step_inputs.hpp"
 
@@ -68,11 +69,11 @@ class LawRunner {
   static constexpr std::size_t kMaxOwed = 64;
   std::vector<msg::SwapPlan> owed_;                 // forecasts that wait for their step
   std::optional<std::uint64_t> last_command_step_;  // as outgoing controller: command this step once more
-  std::optional<std::uint64_t> fresh_step_;         // as incoming controller of a hard handover: forget everything there
-  Window<JointVector> history_;                     // efforts of the latest steps
+  std::optional<std::uint64_t> fresh_step_;  // as incoming controller of a hard handover: forget everything there
+  Window<JointVector> history_;              // efforts of the latest steps
 
-  dds::Writer<msg::JointCommand>& command_out_;
-  dds::Writer<msg::JointCommand>& shadow_out_;
+  LoopOutput<msg::JointCommand> command_out_;
+  LoopOutput<msg::JointCommand> shadow_out_;
   dds::Writer<msg::SwapAck>& ack_out_;
   dds::Writer<msg::ControllerStatus>& status_out_;
   msg::JointCommand message_;

@@ -28,7 +28,7 @@ Plant::Plant(Service& service)
       timer_(service.executor()),
       effort_(JointVector::Zero(scenario_.robot.size())),
       outgoing_effort_(effort_),
-      state_out_(service.output(dds::topics::kPlantState, servicesBut(kPlantName, scenario_))),
+      state_out_(service, dds::topics::kPlantState, servicesBut(kPlantName, scenario_)),
       again_out_(service.output(dds::topics::kPlantStateAgain)),
       reply_out_(service.output(dds::topics::kSimReply)),
       status_out_(service.output(dds::topics::kSimStatus, servicesBut(kPlantName, scenario_))),
@@ -56,9 +56,10 @@ Plant::Plant(Service& service)
                 [this](const msg::JointCommand& message, const dds::RawSample& sample) { onCommand(message, sample); });
   service.input(dds::topics::kSwapAck, controllerNames(scenario_),
                 [this](const msg::SwapAck& ack, const dds::RawSample& sample) { onSwapAck(ack, sample); });
-  service.input(
-      dds::topics::kControllerStatus, {},
-      [this](const msg::ControllerStatus& status, const dds::RawSample& sample) { onControllerStatus(status, sample); });
+  service.input(dds::topics::kControllerStatus, {},
+                [this](const msg::ControllerStatus& status, const dds::RawSample& sample) {
+                  onControllerStatus(status, sample);
+                });
   service.input(
       dds::topics::kServiceStatus, servicesBut(kPlantName, scenario_),
       [this](const msg::ServiceStatus& status, const dds::RawSample& sample) { onServiceStatus(status, sample); });

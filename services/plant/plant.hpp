@@ -16,6 +16,7 @@
 #include "control/arm.hpp"
 #include "control/handover_meter.hpp"
 #include "runtime/checkpoint.hpp"
+#include "runtime/loop_output.hpp"
 #include "runtime/service.hpp"
 #include "step_timing.hpp"
 #include "time/baton_arbiter.hpp"
@@ -146,7 +147,7 @@ class Plant {
   std::set<std::string, std::less<>> waited_for_;  // services not ready yet
   std::optional<HandoverPlan> completed_;          // took effect at the open step: its outcome follows the motion
   ReasonText completed_reason_{};
-  std::uint64_t metered_plan_ = 0;  // whose effect the meter measures
+  std::uint64_t metered_plan_ = 0;                  // whose effect the meter measures
   static constexpr std::size_t kMaxScheduled = 64;  // asked for by operators, besides those of the scenario
   std::vector<HandoverRequest> scheduled_;          // handovers for later steps
   bool keeps_torque_ = false;                       // for the open step
@@ -161,7 +162,7 @@ class Plant {
   std::uint64_t warned_step_ = kNever;
   std::string end_reason_;
 
-  dds::Writer<msg::PlantState>& state_out_;
+  LoopOutput<msg::PlantState> state_out_;
   dds::Writer<msg::PlantState>& again_out_;
   dds::Writer<msg::SimReply>& reply_out_;
   dds::Writer<msg::SimStatus>& status_out_;
