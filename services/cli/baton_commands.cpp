@@ -268,9 +268,12 @@ Json toJson(const msg::SwapOutcome& outcome, const std::optional<msg::SwapReport
 void swap(const CellTarget& target, const SwapWish& wish, ExitCode& exit_code) {
   CellClient client(CellClient::find(target.domain, target.cell));
   const msg::SwapRequest request = requestFor(wish, client);
+  const bool is_paused = simStatus(client).state() == msg::SIM_STATE_PAUSED;
   const auto outcome = client.ask<msg::SwapRequest, msg::SwapOutcome>(
       dds::topics::kSwapRequest, request, dds::topics::kSwapOutcome,
-      [&](const msg::SwapOutcome& one) { return one.request_id() == request.request_id(); }, kPlantName);
+      [&](const msg::SwapOutcome& one) { return one.request_id() == request.request_id(); }, kPlantName,
+      // In a pause only a refusal comes.
+      is_paused && !wish.dry_run ? CellClient::kRecorderPatience : CellClient::kPatience);
   if (!outcome) sayWhyNothingCame(client, request.at_step());
   exit_code = outcome->done() || outcome->feasible() ? ExitCode::kOk : ExitCode::kFailed;
   std::optional<msg::SwapReport> report;
