@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "base/error.hpp"
@@ -37,6 +38,10 @@ void set(YAML::Node node, const std::vector<std::string>& parts, std::size_t at,
          const std::string& path) {
   const std::string& part = parts[at];
   const bool is_last = at + 1 == parts.size();
+  if (node.IsSequence() && is_last && part == "+") {
+    node.push_back(value);
+    return;
+  }
   if (node.IsSequence()) {
     YAML::Node entry = entryOf(node, part, path);
     if (is_last) {
@@ -63,6 +68,28 @@ ScenarioSetting parseSetting(const std::string& text) {
     throw UsageError("--set: expected path=value, such as controllers.impedance.parameters.kp=300, found " + text);
   }
   return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+std::string withController(const std::string& text, const std::string& name, const std::string& law,
+                           const std::string& parameters) {
+  const YAML::Node controllers = YAML::Load(text)["controllers"];
+  const auto known = std::find_if(controllers.begin(), controllers.end(),
+                                  [&](const YAML::Node& one) { return one["name"].as<std::string>("") == name; });
+  const bool is_new = known == controllers.end();
+  if (is_new && law.empty()) {
+    throw UsageError("no controller is called " + name + ": a new one needs a law, --law L; see `baton laws`");
+  }
+  const std::string place = "controllers." + name;
+  std::vector<ScenarioSetting> settings;
+  if (is_new || (!law.empty() && (*known)["law"].as<std::string>("") != law)) {
+    settings.emplace_back(is_new ? "controllers.+" : place, "{name: " + name + ", law: " + law + "}");
+  }
+  std::istringstream lines(parameters);
+  for (std::string line; std::getline(lines, line);) {
+    const auto& [parameter, value] = parseSetting(line);
+    settings.emplace_back(place + ".parameters." + parameter, value);
+  }
+  return editScenario(text, settings);
 }
 
 std::string editScenario(const std::string& text, const std::vector<ScenarioSetting>& settings) {

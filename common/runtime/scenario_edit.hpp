@@ -1,6 +1,6 @@
 /// Changes to the text of a scenario, by path: "controllers.impedance.parameters.kp",
 /// "environment.walls.0.damping_N_s_per_m". A part of a path is a key, or in a list the entry's place (from 0) or its
-/// `name`. What comes out is checked like any scenario when it is read.
+/// `name`; a last part "+" appends to a list. What comes out is checked like any scenario when it is read.
 #pragma once
 
 #include <string>
@@ -18,5 +18,11 @@ using ScenarioSetting = std::pair<std::string, std::string>;
 /// Keys that are missing in a map are added. Comments are lost. Throws UsageError for a path that leads nowhere and for
 /// text that is not YAML.
 [[nodiscard]] std::string editScenario(const std::string& text, const std::vector<ScenarioSetting>& settings);
+
+/// The scenario with a controller that is new, has another law (its parameters are the law's then), or other parameters.
+/// @param law         empty: as it stands in the scenario.
+/// @param parameters  "name=value" in YAML, each on a line.
+[[nodiscard]] std::string withController(const std::string& text, const std::string& name, const std::string& law,
+                                         const std::string& parameters);
 
 }  // namespace baton

@@ -204,6 +204,17 @@ void BatonArbiter::memberFailed(int member, std::uint64_t open_step, const char*
   }
 }
 
+int BatonArbiter::memberJoined(const ArbiterMember& member) {
+  config_.members.push_back(member);
+  failed_.push_back(0);
+  failed_at_.push_back(0);
+  return static_cast<int>(config_.members.size()) - 1;
+}
+
+void BatonArbiter::memberChanged(int member, bool requires_contact) noexcept {
+  config_.members[static_cast<std::size_t>(member)].requires_contact = requires_contact;
+}
+
 void BatonArbiter::memberReturned(int member) noexcept {
   const auto index = static_cast<std::size_t>(member);
   if (member >= 0 && index < failed_.size() && member != holder_) failed_[index] = 0;

@@ -4,6 +4,7 @@
 #include "bag_command.hpp"
 #include "baton_commands.hpp"
 #include "branch_command.hpp"
+#include "controller_command.hpp"
 #include "demo_command.hpp"
 #include "figures_command.hpp"
 #include "laws_command.hpp"
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
     baton::addDemoCommand(app, exit_code);
     baton::addRunCommands(app, exit_code);
     baton::addBatonCommands(app, exit_code);
+  addControllerCommand(app, exit_code);
     addOperateCommands(app, exit_code);
     baton::addParamCommand(app);
     baton::addReplayCommand(app, exit_code);

@@ -7,6 +7,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -64,6 +65,7 @@ class Plant {
   void abort(const std::string& reason);
   void memberFailed(int member, const char* reason);
   void memberReturned(int member);
+  void newcomerStandsBy(const msg::ControllerStatus& status, const dds::RawSample& sample);
   void resumeFromCheckpoint();
   // plant_baton.cpp: handovers
   [[nodiscard]] static ArbiterConfig arbiterConfig(const Scenario& scenario);
@@ -123,8 +125,9 @@ class Plant {
     dds::GuidPrefix prefix{};
     std::int32_t pid = 0;  // 0: none yet
   };
-  std::vector<Speaker> speakers_;    // by member
-  std::vector<Speaker> successors_;  // ready before their predecessor was known to have failed
+  std::vector<Speaker> speakers_;                          // by member
+  std::vector<Speaker> successors_;                        // ready before their predecessor was known to have failed
+  std::map<std::string, Speaker, std::less<>> newcomers_;  // ready controllers that are no members yet
 
   struct Refusal {
     std::uint64_t step = 0;

@@ -1,11 +1,23 @@
 // What arrives at the plant: contacts, commands, the operator's requests, the services' readiness.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
+#include "control/law.hpp"
 #include "plant.hpp"
 
 namespace baton {
+namespace {
+
+/// nullptr for a law of somebody else's.
+const LawInfo* lawCalled(std::string_view name) {
+  const auto& laws = allLaws();
+  const auto found = std::find_if(laws.begin(), laws.end(), [&](const LawInfo& law) { return law.name == name; });
+  return found == laws.end() ? nullptr : &*found;
+}
+
+}  // namespace
 
 void Plant::onContact(const msg::Contact& message, const dds::RawSample& sample) {
   if (message.step() != master_.step() || master_.hasContact()) return;
@@ -69,6 +81,10 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
       return service_.giveWay(name + " answers the steps of another plant");
     }
     waited_for_.erase(name);
+    if (member == kBrake && status.role() == "controller") {
+      newcomers_[name] = {dds::prefixOf(sample.writer), status.pid()};
+      return;
+    }
     if (member != kBrake) {
       // Another one of that name is heard only when this one has failed, of which word may come later.
       Speaker& speaker = speakers_[static_cast<std::size_t>(member)];
@@ -83,6 +99,7 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
     startWhenAllAreReady();
     if (member == kBrake) askAgain();  // a part that was started again has not seen the open step
   } else if (status.state() == msg::SERVICE_FAILED && !master_.isOver()) {
+    if (newcomers_.erase(name) > 0) return;
     if (member == kBrake || master_.phase() == SimPhase::kStarting)
       return abort(name + " failed: " + status.text().c_str());
     Speaker& speaker = speakers_[static_cast<std::size_t>(member)];
@@ -100,9 +117,27 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
 /// never returns by itself.
 void Plant::onControllerStatus(const msg::ControllerStatus& status, const dds::RawSample& sample) {
   const int member = memberCalled(status.name().c_str());
-  if (master_.isOver() || !speaksFor(member, sample) || !arbiter_.hasFailed(member)) return;
   const bool stands_by = status.state() == msg::CONTROLLER_STANDBY || status.state() == msg::CONTROLLER_COLD;
-  if (stands_by && status.step() > arbiter_.failedAt(member)) memberReturned(member);
+  if (master_.isOver() || !stands_by) return;
+  if (member == kBrake) return newcomerStandsBy(status, sample);
+  if (!speaksFor(member, sample)) return;
+  if (const LawInfo* law = lawCalled(status.law().c_str())) arbiter_.memberChanged(member, law->requires_contact);
+  if (arbiter_.hasFailed(member) && status.step() > arbiter_.failedAt(member)) memberReturned(member);
+}
+
+/// A controller that the scenario did not have computes along: from now on the baton may go to it.
+void Plant::newcomerStandsBy(const msg::ControllerStatus& status, const dds::RawSample& sample) {
+  const auto found = newcomers_.find(std::string_view(status.name().c_str()));
+  const LawInfo* law = lawCalled(status.law().c_str());
+  if (found == newcomers_.end() || found->second.prefix != dds::prefixOf(sample.writer) || law == nullptr) return;
+  if (arbiter_.members().size() == msg::MAX_CONTROLLERS) return;  // the supervisor starts no more than that
+  arbiter_.memberJoined({found->first, law->requires_contact});
+  speakers_.push_back(found->second);
+  successors_.emplace_back();
+  refusals_.emplace_back();
+  newcomers_.erase(found);
+  service_.event(msg::SEVERITY_INFO, "joined", arbiter_.members().back().name + " stands by");
+  publishBaton();
 }
 
 void Plant::onSimRequest(const msg::SimRequest& request) {

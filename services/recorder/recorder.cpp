@@ -216,8 +216,9 @@ void Recorder::writeBatch(const SampleQueue::Batch& batch) {
       if (dds::decode(payload, rewind)) onRewind(rewind);
     } else if (topic.options.topic == dds::topics::kServiceStatus.name) {
       msg::ServiceStatus status;
-      if (dds::decode(payload, status) && status.state() == msg::SERVICE_FAILED)
-        ledger_.giveUpOn(status.name().c_str());
+      if (!dds::decode(payload, status)) continue;
+      if (status.state() == msg::SERVICE_FAILED) ledger_.giveUpOn(status.name().c_str());
+      if (status.state() == msg::SERVICE_READY) ledger_.expect(status.name().c_str());
     }
   }
 }

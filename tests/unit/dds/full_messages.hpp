@@ -308,6 +308,21 @@ inline void fill(msg::Decision& m) {
   m.reason(std::string(200, 'r'));
 }
 
+inline void fill(msg::LaunchRequest& m) {
+  m.request_id(kId);
+  m.action(msg::LAUNCH_STOP);
+  m.name(fullName());
+  m.law(std::string(64, 'l'));
+  m.parameters(std::string(2000, 'p'));
+}
+
+inline void fill(msg::LaunchReply& m) {
+  m.request_id(kId);
+  m.accepted(true);
+  m.pid(-2'000'000'000);
+  m.reason(std::string(400, 'r'));
+}
+
 inline void fill(msg::ServiceStatus& m) {
   m.name(fullName());
   m.role(fullName());
