@@ -55,6 +55,13 @@ void set(YAML::Node node, const std::vector<std::string>& parts, std::size_t at,
   set(node[part], parts, at + 1, value, path);
 }
 
+std::string textOf(const YAML::Node& root) {
+  YAML::Emitter emitter;
+  emitter.SetDoublePrecision(17);
+  emitter << root;
+  return std::string(emitter.c_str()) + "\n";
+}
+
 }  // namespace
 
 ScenarioSetting parseSetting(const std::string& text) {
@@ -76,10 +83,14 @@ std::string editScenario(const std::string& text, const std::vector<ScenarioSett
     }
     set(root, partsOf(path), 0, parsed, path);
   }
-  YAML::Emitter emitter;
-  emitter.SetDoublePrecision(17);
-  emitter << root;
-  return std::string(emitter.c_str()) + "\n";
+  return textOf(root);
+}
+
+std::string appendToScenario(const std::string& text, const std::string& key, const std::vector<std::string>& entries) {
+  if (entries.empty()) return text;
+  YAML::Node root = YAML::Load(text);
+  for (const std::string& entry : entries) root[key].push_back(YAML::Load(entry));
+  return textOf(root);
 }
 
 }  // namespace baton

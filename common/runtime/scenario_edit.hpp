@@ -19,4 +19,8 @@ using ScenarioSetting = std::pair<std::string, std::string>;
 /// text that is not YAML.
 [[nodiscard]] std::string editScenario(const std::string& text, const std::vector<ScenarioSetting>& settings);
 
+/// More entries, as YAML text, at the end of a list of the scenario, which is made when it is missing.
+[[nodiscard]] std::string appendToScenario(const std::string& text, const std::string& key,
+                                           const std::vector<std::string>& entries);
+
 }  // namespace baton

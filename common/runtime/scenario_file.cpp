@@ -56,8 +56,8 @@ void readTime(const YamlMap& map, Scenario& scenario) {
     scenario.mode = mode->oneOf<SimMode>({{"lockstep", SimMode::kLockstep}, {"realtime", SimMode::kRealtime}});
   }
   scenario.rate = readRate(map, scenario.mode);
-  scenario.max_missed_steps = static_cast<std::uint64_t>(
-      map.integerOr("max_missed_steps", 0, 1'000'000, defaultMissedSteps(scenario.step_ns)));
+  scenario.max_missed_steps =
+      static_cast<std::uint64_t>(map.integerOr("max_missed_steps", 0, 1'000'000, defaultMissedSteps(scenario.step_ns)));
   if (const auto node = map.find("late")) {
     const YamlMap late = node->map({"policy", "after_s"});
     if (const auto policy = late.find("policy")) {
@@ -225,7 +225,8 @@ Scenario readScenario(const std::string& file, const std::string& text,
       YamlNode::parse(file, text).map({"name",         "description", "robot",       "step_s",     "substeps",
                                        "duration_s",   "mode",        "rate",        "late",       "max_missed_steps",
                                        "effort_limit", "start",       "environment", "trajectory", "controllers",
-                                       "active",       "standby",     "swaps",       "baton",      "recording"});
+                                       "active",       "standby",     "swaps",       "failures",   "stops",
+                                       "baton",        "recording"});
   Scenario scenario;
   scenario.file = file;
   scenario.text = text;
@@ -254,7 +255,9 @@ Scenario readScenario(const std::string& file, const std::string& text,
     scenario.hot_standby = standby->oneOf<bool>({{"hot", true}, {"cold", false}});
   }
   readBaton(map, scenario);
+  readFailures(map, scenario);
   readSwaps(map, scenario);
+  readStops(map, scenario);
   scenario.recording = readRecording(map, scenario);
   return scenario;
 }
@@ -262,11 +265,8 @@ Scenario readScenario(const std::string& file, const std::string& text,
 }  // namespace
 
 ArmConfig Scenario::armConfig() const {
-  return {.step_s = stepSeconds(),
-          .substeps = substeps,
-          .start_q = start_q,
-          .start_qd = start_qd,
-          .coupling = coupling};
+  return {
+      .step_s = stepSeconds(), .substeps = substeps, .start_q = start_q, .start_qd = start_qd, .coupling = coupling};
 }
 
 const ControllerConfig& Scenario::controller(const std::string& controller_name) const {

@@ -27,7 +27,6 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
   if (!is_usable) {
     // It never reaches the integrator: the joints keep their torque for this step, and the next one is somebody else's.
     effort = arm_.holdingEffort(message.step());
-    arbiter_.memberFailed(member, message.step(), "it commanded an effort that is not finite or of the wrong size");
     service_.event(msg::SEVERITY_ERROR, "bad_command",
                    nameOf(member) + " commanded an effort that is not finite or of the wrong size");
   }
@@ -40,6 +39,11 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
     outgoing_effort_ = effort;
     hashes_.outgoing_command = dds::chainHash(0, sample.payload);
     master_.outgoingCommandArrived(message.step());
+  }
+  if (members_[static_cast<std::size_t>(member)].fails_when_commanded) {
+    commandedAsPlanned(member);
+  } else if (!is_usable) {
+    memberLost(member, "it commanded an effort that is not finite or of the wrong size");
   }
   proceed();
 }
@@ -55,13 +59,14 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
     waited_for_.erase(name);
     if (member != kBrake) {
       // Another one of that name is heard only when this one has failed, of which word may come later.
-      Speaker& speaker = speakers_[static_cast<std::size_t>(member)];
+      Member& one = members_[static_cast<std::size_t>(member)];
       const Speaker ready{dds::prefixOf(sample.writer), status.pid()};
-      if (speaker.pid == 0 || arbiter_.hasFailed(member)) {
-        speaker = ready;
-        memberReturned(member);
-      } else if (speaker.prefix != ready.prefix) {
-        successors_[static_cast<std::size_t>(member)] = ready;
+      if (one.speaker.pid == 0 || one.is_lost) {
+        one.is_new = one.speaker.prefix != ready.prefix;
+        one.speaker = ready;
+        memberFound(member);
+      } else if (one.speaker.prefix != ready.prefix) {
+        one.successor = ready;
       }
     }
     startWhenAllAreReady();
@@ -69,12 +74,13 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
   } else if (status.state() == msg::SERVICE_FAILED && !master_.isOver()) {
     if (member == kBrake || master_.phase() == SimPhase::kStarting)
       return abort(name + " failed: " + status.text().c_str());
-    Speaker& speaker = speakers_[static_cast<std::size_t>(member)];
-    if (speaker.pid != status.pid()) return;  // not the one that speaks for it
-    memberFailed(member, status.text().c_str());
-    if (Speaker& successor = successors_[static_cast<std::size_t>(member)]; successor.pid != 0) {
-      speaker = std::exchange(successor, {});
-      memberReturned(member);
+    Member& one = members_[static_cast<std::size_t>(member)];
+    if (one.speaker.pid != status.pid()) return;  // not the one that speaks for it
+    memberLost(member, status.text().c_str());
+    if (one.successor.pid != 0) {
+      one.speaker = std::exchange(one.successor, {});
+      one.is_new = true;
+      memberFound(member);
     }
     proceed();
   }
@@ -85,8 +91,9 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
 void Plant::onControllerStatus(const msg::ControllerStatus& status, const dds::RawSample& sample) {
   const int member = memberCalled(status.name().c_str());
   if (master_.isOver() || !speaksFor(member, sample) || !arbiter_.hasFailed(member)) return;
+  if (!members_[static_cast<std::size_t>(member)].is_lost) return;
   const bool stands_by = status.state() == msg::CONTROLLER_STANDBY || status.state() == msg::CONTROLLER_COLD;
-  if (stands_by && status.step() > arbiter_.failedAt(member)) memberReturned(member);
+  if (stands_by && status.step() > arbiter_.failedAt(member)) memberFound(member);
 }
 
 void Plant::onSimRequest(const msg::SimRequest& request) {
@@ -148,9 +155,7 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
       case msg::SIM_STOP:
         if (request.at_step() == 0) {
           reply.accepted(true);
-        } else if (master_.endAt(request.at_step())) {
-          arbiter_.endAt(request.at_step());
-          publishSwapActions();
+        } else if (stopAt(request.at_step())) {
           reply.accepted(true);
         } else {
           refuse("expected a step after " + std::to_string(step) + " and not after the end of the run");
@@ -162,6 +167,7 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
   reply_out_.write(reply);
   if (request.action() == msg::SIM_STOP && reply.accepted() && request.at_step() == 0) {
     end_reason_ = "stopped by request";
+    decideEnd(step);
     master_.finish();
     return finish();
   }

@@ -46,10 +46,9 @@ Supervisor::Supervisor(Service& service, Deployment deployment)
   });
   service.input(dds::topics::kRecorderStatus, {},
                 [this](const msg::RecorderStatus& status, const dds::RawSample&) { recorder_ = status; });
-  service.input(dds::topics::kSwapOutcome, {},
-                [this](const msg::SwapOutcome& outcome, const dds::RawSample&) {
-                  if (!outcome.dry_run()) swaps_.push_back(outcome);
-                });
+  service.input(dds::topics::kSwapOutcome, {}, [this](const msg::SwapOutcome& outcome, const dds::RawSample&) {
+    if (!outcome.dry_run()) swaps_.push_back(outcome);
+  });
 }
 
 ExitCode Supervisor::run() {
@@ -57,8 +56,12 @@ ExitCode Supervisor::run() {
   service_.run();  // what the handlers wrote is ours alone from here on
   // A run that was reset is its last take.
   std::erase_if(swaps_, [&](const msg::SwapOutcome& swap) { return swap.take() != sim_.take(); });
+  const std::vector<PlannedSwap>& planned = service_.scenario().swaps;
   const bool was_refused = std::any_of(swaps_.begin(), swaps_.end(), [&](const msg::SwapOutcome& swap) {
-    return swap.request_id() == 0 && !swap.done() && swap.at_step() < sim_.step();  // else the run ended before
+    if (swap.request_id() != 0 || swap.done() || swap.at_step() >= sim_.step()) return false;  // the run ended before
+    return std::none_of(planned.begin(), planned.end(), [&](const PlannedSwap& one) {
+      return one.may_be_refused && one.at_step == swap.at_step() && swap.incoming() == one.to.c_str();
+    });
   });
   if (was_refused) fail(ExitCode::kFailed, "a handover that the scenario plans was refused");
   for (const msg::SwapOutcome& swap : swaps_) {
