@@ -9,14 +9,18 @@ tool=$1 idl=$2 include=$3 out=$4
 case $tool in
   fastdds)
     mkdir -p "$out"
-    # fastddsgen leaves preprocessed files, the included ones too, in a directory that several at once must not share.
+    # fastddsgen writes the types of included files too, and preprocessed files beside: several at once must not share a
+    # directory, and only this file's own types are taken over.
     scratch=$(mktemp -d)
     trap 'rm -rf "$scratch"' EXIT
-    log=$(fastddsgen -cs -replace -t "$scratch" -I "$include" -d "$out" "$idl" 2>&1) || { printf '%s\n' "$log" >&2; exit 1; }
+    mkdir "$scratch/types"
+    log=$(fastddsgen -cs -replace -t "$scratch" -I "$include" -d "$scratch/types" "$idl" 2>&1) || { printf '%s\n' "$log" >&2; exit 1; }
+    name=$(basename "$idl" .idl)
     # For a sequence of strings fastddsgen 2.3 makes as much room as the payload claims to need before it looks whether
     # the bytes are there: a forged length would ask for gigabytes.
     sed -i 's/^\( *\)\(m_[A-Za-z_]*\.resize(sequence_size);\)/\1if (sequence_size > 1024) throw eprosima::fastcdr::exception::NotEnoughMemoryException("a sequence of strings is too long");\n\1\2/' \
-      "$out/$(basename "$idl" .idl).cxx"
+      "$scratch/types/$name.cxx"
+    mv "$scratch/types/$name."* "$scratch/types/${name}PubSubTypes."* "$out"
     # fastddsgen 2.3 does not know @unit and says so each time; the annotation is for the tools that read recordings.
     problems=$(printf '%s\n' "$log" | grep -iE 'warning|error' | grep -v 'Annotation unit not supported' || true)
     ;;

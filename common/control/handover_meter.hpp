@@ -19,12 +19,12 @@ struct HandoverStep {
 };
 
 struct HandoverMeasure {
-  std::uint64_t at_step = 0;         // K
-  std::uint64_t steps = 0;           // measured
-  JointVector max_effort_rate;       // largest |tau(k) - tau(k - 1)| / step_s of each joint [N m/s or N/s]
+  std::uint64_t at_step = 0;          // K
+  std::uint64_t steps = 0;            // measured
+  JointVector max_effort_rate;        // largest |tau(k) - tau(k - 1)| / step_s of each joint [N m/s or N/s]
   std::uint64_t rate_limit_hits = 0;  // how often, over joints and steps, it was above the limit
   double peak_force_deviation = 0.0;  // largest |f_e(k) - f_e(K)| [N]
-  double blend_energy = 0.0;          // sum of residual(k) . dq(k): the work of the blend's torque, held over each step [J]
+  double blend_energy = 0.0;  // sum of residual(k) . dq(k): the work of the blend's torque, held over each step [J]
 };
 
 class HandoverMeter {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "control/parameters.hpp"
 #include "environment/plane.hpp"
 #include "robot/model.hpp"
+#include "time/fault.hpp"
 #include "trajectory/trajectory.hpp"
 
 namespace baton {
@@ -26,13 +28,15 @@ struct ControllerConfig {
   ParameterValues parameters;  // complete and checked
 };
 
+enum class SwapExpectation { kDone, kRefused, kAny };
+
 struct PlannedSwap {
   std::uint64_t at_step = 0;
   std::string to;
-  bool force = false;                        // even if the forecast is above max_effort_step
-  bool hard = false;                         // no help: no blend, and the incoming law starts anew
-  std::optional<std::uint64_t> blend_steps;  // as BatonConfig says when not given; none when hard
-  bool may_be_refused = false;               // which is then no failure of the run, and nothing is foreseen
+  bool force = false;                               // even if the forecast is above max_effort_step
+  bool hard = false;                                // no help: no blend, and the incoming law starts anew
+  std::optional<std::uint64_t> blend_steps;         // as BatonConfig says when not given; none when hard
+  SwapExpectation expect = SwapExpectation::kDone;  // a run in which it goes otherwise has failed
 };
 
 /// The plant takes a controller for failed, whatever its process does.
@@ -53,9 +57,10 @@ struct PlannedStop {
 inline constexpr double kMaxBlend_s = 10.0;
 
 struct BatonConfig {
-  std::uint64_t margin_steps = 5;     // steps between the decision and the swap; 3 in realtime when left out
-  std::uint64_t blend_steps = 200;    // over which the difference between the two torques fades
-  double max_effort_step = 50.0;      // forecast above this is refused, any joint [N m or N]
+  std::uint64_t margin_steps = 5;   // steps between the decision and the swap; 3 in realtime when left out
+  std::uint64_t blend_steps = 200;  // over which the difference between the two torques fades
+  double max_effort_step = 50.0;    // forecast above this is refused, any joint [N m or N]
+  double max_command = std::numeric_limits<double>::infinity();  // a holder that commands more has failed [N m or N]
   JointVector max_effort_rate;        // n entries: faster changes in a handover are counted [N m/s or N/s]
   std::vector<std::string> fallback;  // who takes over from a holder that fails, in order; then the brake
 };
@@ -99,6 +104,7 @@ struct Scenario {
   std::vector<PlannedStop> stops;        // by the step they are decided at
   BatonConfig baton;
   RecordingConfig recording;
+  std::vector<Fault> faults;          // that strike on purpose
   std::vector<std::string> warnings;  // what is odd but workable, with file and line
 
   [[nodiscard]] double stepSeconds() const { return static_cast<double>(step_ns) * 1e-9; }
@@ -108,6 +114,9 @@ struct Scenario {
     return recording.checkpoint_steps > 0 && step % recording.checkpoint_steps == 0;
   }
   [[nodiscard]] bool hasEnvironment() const { return !walls.empty(); }
+  /// Whether something of this service goes wrong on purpose.
+  [[nodiscard]] bool wantsFaultOf(const std::string& service) const;
+  [[nodiscard]] bool plansFailureOf(const std::string& controller_name) const;
   /// The arm at the start of the run.
   [[nodiscard]] ArmConfig armConfig() const;
   /// The controller called that; throws UsageError, with the nearest name, when there is none.

@@ -34,11 +34,13 @@ void readBaton(const YamlMap& map, Scenario& scenario) {
   // At 1 kHz a request then takes effect within 5 ms: it waits for the next step, the margin, and no more.
   if (scenario.mode == SimMode::kRealtime) scenario.baton.margin_steps = 3;
   if (const auto node = map.find("baton")) {
-    const YamlMap baton = node->map({"margin_steps", "blend_s", "max_effort_step", "max_effort_rate", "fallback"});
+    const YamlMap baton =
+        node->map({"margin_steps", "blend_s", "max_effort_step", "max_effort_rate", "max_command", "fallback"});
     BatonConfig& config = scenario.baton;
     config.margin_steps = static_cast<std::uint64_t>(baton.integerOr("margin_steps", 1, 1000, config.margin_steps));
     config.max_effort_step =
         baton.numberOr("max_effort_step", {0.0, 1e9, "N m or N", true}, scenario.baton.max_effort_step);
+    config.max_command = baton.numberOr("max_command", {0.0, 1e9, "N m or N", true}, config.max_command);
     if (const auto rate = baton.find("max_effort_rate")) {
       config.max_effort_rate = readJointsOrOne(*rate, kEffortRate, scenario.robot.size());
     }
@@ -110,7 +112,11 @@ PlannedSwap readSwap(const YamlMap& map, const Scenario& scenario) {
                    .force = map.booleanOr("force", false),
                    .hard = map.booleanOr("hard", false),
                    .blend_steps = {},
-                   .may_be_refused = map.booleanOr("may_be_refused", false)};
+                   .expect = SwapExpectation::kDone};
+  if (const auto expect = map.find("expect")) {
+    swap.expect = expect->oneOf<SwapExpectation>(
+        {{"done", SwapExpectation::kDone}, {"refused", SwapExpectation::kRefused}, {"any", SwapExpectation::kAny}});
+  }
   if (const auto blend_s = map.find("blend_s")) {
     if (swap.hard) blend_s->fail("expected none beside hard: true, which has no blend");
     swap.blend_steps =
@@ -131,34 +137,37 @@ void readSwaps(const YamlMap& map, Scenario& scenario) {
   };
   std::string holder = scenario.active;
   for (const YamlNode& item : node->list(0, kMaxSwaps)) {
-    const YamlMap given = item.map({"at_s", "to", "force", "hard", "blend_s", "may_be_refused"});
+    const YamlMap given = item.map({"at_s", "to", "force", "hard", "blend_s", "expect"});
     const YamlNode at_s = given["at_s"];
     const PlannedSwap swap = readSwap(given, scenario);
     std::uint64_t earliest = baton.margin_steps + 2;
     std::string why = ", margin_steps + 2";
-    if (swap.may_be_refused) {
+    const bool is_free = swap.expect == SwapExpectation::kAny;  // as an operator is, who may ask for what cannot be
+    if (is_free) {
       earliest = baton.margin_steps + 1;
       why = ", margin_steps + 1";
     }
     if (!scenario.swaps.empty()) {
       const PlannedSwap& before = scenario.swaps.back();
       const std::uint64_t blend_steps = before.hard ? 0 : before.blend_steps.value_or(baton.blend_steps);
-      const std::uint64_t apart = swap.may_be_refused ? 0 : std::max(2 * baton.margin_steps + 3, blend_steps);
+      const std::uint64_t apart = is_free ? 0 : std::max(2 * baton.margin_steps + 3, blend_steps);
       if (before.at_step + apart >= earliest) {
         earliest = before.at_step + apart;
-        why = swap.may_be_refused
-                  ? ", that of the swap before"
-                  : ": the swap before must be over, which takes its blend and more than 2 margin_steps + 2";
+        why = is_free ? ", that of the swap before"
+                      : ": the swap before must be over, which takes its blend and more than 2 margin_steps + 2";
       }
     }
     if (swap.at_step < earliest) at_s.refuse("a time not before " + in_words(earliest) + why);
     if (scenario.end_step > 0 && swap.at_step >= scenario.end_step) {
       at_s.refuse("a time before the end of the run, " + in_words(scenario.end_step));
     }
-    // Who holds the baton behind a failure, or what may be refused, nobody knows beforehand.
-    const bool is_foreseen = !swap.may_be_refused && scenario.failures.empty() && !holder.empty();
-    if (is_foreseen && swap.to == holder) given["to"].refuse("a controller that does not hold the baton already");
-    holder = swap.may_be_refused ? "" : swap.to;
+    // Who holds the baton behind a failure, or behind what may go either way, nobody knows beforehand.
+    if (is_free || !scenario.failures.empty()) holder.clear();
+    if (swap.expect == SwapExpectation::kDone) {
+      const bool is_known = !holder.empty() && swap.to == holder;
+      if (is_known) given["to"].refuse("a controller that does not hold the baton already");
+      holder = swap.to;
+    }
     scenario.swaps.push_back(swap);
   }
 }

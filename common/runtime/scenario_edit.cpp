@@ -86,6 +86,18 @@ std::string editScenario(const std::string& text, const std::vector<ScenarioSett
   return textOf(root);
 }
 
+std::string keepInScenario(const std::string& text, const std::string& key,
+                           const std::function<bool(std::size_t)>& keeps) {
+  YAML::Node root = YAML::Load(text);
+  if (!root[key].IsDefined()) return text;
+  YAML::Node kept(YAML::NodeType::Sequence);
+  for (std::size_t i = 0; i < root[key].size(); ++i) {
+    if (keeps(i)) kept.push_back(root[key][i]);
+  }
+  root[key] = kept;
+  return textOf(root);
+}
+
 std::string appendToScenario(const std::string& text, const std::string& key, const std::vector<std::string>& entries) {
   if (entries.empty()) return text;
   YAML::Node root = YAML::Load(text);

@@ -226,7 +226,7 @@ Scenario readScenario(const std::string& file, const std::string& text,
                                        "duration_s",   "mode",        "rate",        "late",       "max_missed_steps",
                                        "effort_limit", "start",       "environment", "trajectory", "controllers",
                                        "active",       "standby",     "swaps",       "failures",   "stops",
-                                       "baton",        "recording"});
+                                       "baton",        "recording",   "faults"});
   Scenario scenario;
   scenario.file = file;
   scenario.text = text;
@@ -259,6 +259,7 @@ Scenario readScenario(const std::string& file, const std::string& text,
   readSwaps(map, scenario);
   readStops(map, scenario);
   scenario.recording = readRecording(map, scenario);
+  readFaults(map, scenario);
   return scenario;
 }
 
@@ -267,6 +268,15 @@ Scenario readScenario(const std::string& file, const std::string& text,
 ArmConfig Scenario::armConfig() const {
   return {
       .step_s = stepSeconds(), .substeps = substeps, .start_q = start_q, .start_qd = start_qd, .coupling = coupling};
+}
+
+bool Scenario::wantsFaultOf(const std::string& service) const {
+  return std::any_of(faults.begin(), faults.end(), [&](const Fault& fault) { return fault.service == service; });
+}
+
+bool Scenario::plansFailureOf(const std::string& controller_name) const {
+  return std::any_of(failures.begin(), failures.end(),
+                     [&](const PlannedFailure& failure) { return failure.controller == controller_name; });
 }
 
 const ControllerConfig& Scenario::controller(const std::string& controller_name) const {

@@ -48,6 +48,8 @@ void readBaton(const YamlMap& map, Scenario& scenario);
 void readFailures(const YamlMap& map, Scenario& scenario);
 void readSwaps(const YamlMap& map, Scenario& scenario);
 void readStops(const YamlMap& map, Scenario& scenario);
+/// The faults that are wanted, likewise.
+void readFaults(const YamlMap& map, Scenario& scenario);
 
 /// The walls of an environment.
 [[nodiscard]] std::vector<PlaneSpec> readWalls(const YamlNode& node);

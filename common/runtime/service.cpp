@@ -5,9 +5,32 @@
 
 #include <algorithm>
 #include <boost/asio/steady_timer.hpp>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <ctime>
+#include <utility>
 
 namespace baton {
 namespace asio = boost::asio;
+namespace {
+
+/// Somebody else has to: who is stopped does nothing.
+void wakeUpAfter(double seconds) {
+  const pid_t sleeper = getpid();
+  const timespec pause{static_cast<time_t>(seconds), static_cast<long>(std::fmod(seconds, 1.0) * 1e9)};
+  // The child may do no more than what is safe in a signal handler: the parent has other threads.
+  if (const pid_t waker = fork(); waker == 0) {
+    ::close_range(3, ~0U, 0);
+    timespec rest = pause;
+    while (::nanosleep(&rest, &rest) != 0 && errno == EINTR) {
+    }
+    ::kill(sleeper, SIGCONT);
+    ::_exit(0);
+  }
+}
+
+}  // namespace
 
 Service::Service(ServiceOptions options, Scenario scenario)
     : options_(std::move(options)),
@@ -15,6 +38,9 @@ Service::Service(ServiceOptions options, Scenario scenario)
       // A peer's discovery data may come after its endpoints are matched.
       participant_(options_.participant(),
                    [this](const dds::Peer& peer) { asio::post(executor_, [this, peer] { peerJoined(peer); }); }) {
+  for (const Fault& fault : scenario_.faults) {
+    if (fault.service == options_.name && isOfProcess(fault.kind)) process_faults_.push_back(fault);
+  }
   status_ = &output(dds::topics::kServiceStatus);
   events_ = &output(dds::topics::kEvent);
   manifest_ = &output(dds::topics::kServiceManifest);
@@ -29,6 +55,17 @@ Service::Service(ServiceOptions options, Scenario scenario)
 
 Service::~Service() {
   while (!endpoints_.empty()) endpoints_.pop_back();
+}
+
+/// Runs only where the scenario wants a fault of this process. The step is not answered, or late.
+void Service::strikeWhenReached(std::uint64_t step) {
+  const bool has_begun = std::exchange(has_begun_, true);
+  for (const Fault& fault : process_faults_) {
+    if (!has_begun || step_ >= fault.from_step || step < fault.from_step) continue;
+    if (fault.kind == FaultKind::kKill) ::raise(SIGKILL);
+    if (fault.seconds > 0.0) wakeUpAfter(fault.seconds);
+    ::raise(SIGSTOP);
+  }
 }
 
 StepStamp Service::stampOf(std::uint64_t step) const { return baton::stampOf(step, scenario_.step_ns); }

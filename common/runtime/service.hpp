@@ -57,8 +57,12 @@ class Service {
 
   /// Publishes an event and logs it, from the executor; any thread may ask.
   void event(msg::Severity severity, const std::string& kind, const std::string& text);
-  /// Where the run is, for events.
-  void at(std::uint64_t step) { step_ = step; }
+  /// Where the run is, for events; before the step is answered. A fault that the scenario wants on this process strikes
+  /// here.
+  void at(std::uint64_t step) {
+    if (!process_faults_.empty()) strikeWhenReached(step);
+    step_ = step;
+  }
   /// The service has answered this step for good; after the last one its manifest goes out. From handlers.
   void stepDone(std::uint64_t step);
   /// The run ended at `step`: from the plant itself, or from SimStatus for all others. `clean` when every service will
@@ -105,6 +109,7 @@ class Service {
   void giveWayToElders();
   void peerJoined(const dds::Peer& peer);
   void tellLosses();
+  void strikeWhenReached(std::uint64_t step);
   void checkBarrier();
   void publishManifest();
   void onRewindMessage(const msg::Rewind& rewind);
@@ -139,6 +144,8 @@ class Service {
   std::function<void()> on_ready_;
   std::function<void()> on_signal_;
   std::atomic<std::uint64_t> step_{0};
+  std::vector<Fault> process_faults_;  // that the scenario wants on this process
+  bool has_begun_ = false;             // at() was called: a process that was started again is spared
   bool answers_steps_ = true;
   std::optional<std::uint64_t> last_done_;
   std::optional<std::uint64_t> end_step_;

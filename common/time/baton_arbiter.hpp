@@ -39,8 +39,8 @@ struct HandoverRequest {
   int target = kBrake;
   std::uint64_t at_step = 0;  // 0: as soon as the margin allows
   bool force = false;
-  bool hard = false;                         // no help: no blend, and the incoming law starts anew
-  std::optional<std::uint64_t> blend_steps;  // as configured when not given; none when hard
+  bool hard = false;                                        // no help: no blend, and the incoming law starts anew
+  std::optional<std::uint64_t> blend_steps = std::nullopt;  // as configured when not given; none when hard
 };
 
 struct HandoverPlan {

@@ -21,7 +21,7 @@ struct ArbiterMember {
 /// A controller's answer to being asked for a step.
 struct Forecast {
   bool is_ready = false;
-  JointVector effort;       // when it is ready [N m or N]
+  JointVector effort;      // when it is ready [N m or N]
   ReasonText not_ready{};  // why not, else
 };
 

@@ -44,8 +44,15 @@ class CellClient {
   template <class T>
   std::optional<T> latest(const dds::Topic<T>& topic, std::chrono::milliseconds patience = kPatience);
 
-  /// Sends `request` once `service` listens and talks back, then waits for the first answer that `is_answer` accepts.
-  /// Throws UnavailableError when nobody listens; returns nothing when no answer came in time.
+  /// Sends all `requests` once `service` listens and talks back, then waits for as many answers that `is_answer`
+  /// accepts; returns those that came in time. Throws UnavailableError when nobody listens.
+  template <class Request, class Answer>
+  std::vector<Answer> askAll(const dds::Topic<Request>& request_topic, const std::vector<Request>& requests,
+                             const dds::Topic<Answer>& answer_topic,
+                             const std::function<bool(const Answer&)>& is_answer, const std::string& service,
+                             std::chrono::milliseconds patience = kPatience);
+
+  /// The same for one; returns nothing when no answer came in time.
   template <class Request, class Answer>
   std::optional<Answer> ask(const dds::Topic<Request>& request_topic, const Request& request,
                             const dds::Topic<Answer>& answer_topic, const std::function<bool(const Answer&)>& is_answer,
@@ -89,20 +96,20 @@ std::optional<T> CellClient::latest(const dds::Topic<T>& topic, std::chrono::mil
 }
 
 template <class Request, class Answer>
-std::optional<Answer> CellClient::ask(const dds::Topic<Request>& request_topic, const Request& request,
-                                      const dds::Topic<Answer>& answer_topic,
-                                      const std::function<bool(const Answer&)>& is_answer, const std::string& service,
-                                      std::chrono::milliseconds patience) {
+std::vector<Answer> CellClient::askAll(const dds::Topic<Request>& request_topic, const std::vector<Request>& requests,
+                                       const dds::Topic<Answer>& answer_topic,
+                                       const std::function<bool(const Answer&)>& is_answer, const std::string& service,
+                                       std::chrono::milliseconds patience) {
   const auto wake = [this] {
     const std::lock_guard lock(mutex_);
     changed_.notify_all();
   };
-  std::optional<Answer> answer;
+  std::vector<Answer> answers;
   const dds::Reader<Answer> reader(
       participant_, answer_topic,
       [&](const Answer& message, const dds::RawSample&) {
         const std::lock_guard lock(mutex_);
-        if (!answer && is_answer(message)) answer = message;
+        if (is_answer(message)) answers.push_back(message);
         changed_.notify_all();
       },
       wake);
@@ -116,16 +123,26 @@ std::optional<Answer> CellClient::ask(const dds::Topic<Request>& request_topic, 
   if (!is_heard) {
     throw UnavailableError("the " + service + " of run " + info_.run + " does not listen: see `baton status`");
   }
-  writer.write(request);
+  for (const Request& request : requests) writer.write(request);
   lock.lock();
-  changed_.wait_for(lock, patience, [&] { return answer.has_value(); });
+  changed_.wait_for(lock, patience, [&] { return answers.size() >= requests.size(); });
   if (!info_.recording.empty()) {
     // The recorder learns of this writer when it sees it, and what is asked belongs into the recording.
     changed_.wait_for(lock, kRecorderPatience, [&] { return isMatchedWith(writer.raw().matched(), kRecorderName); });
     lock.unlock();
     writer.raw().waitForAcknowledgments(static_cast<int>(std::chrono::milliseconds(kRecorderPatience).count()));
+    lock.lock();
   }
-  return answer;
+  return answers;
+}
+
+template <class Request, class Answer>
+std::optional<Answer> CellClient::ask(const dds::Topic<Request>& request_topic, const Request& request,
+                                      const dds::Topic<Answer>& answer_topic,
+                                      const std::function<bool(const Answer&)>& is_answer, const std::string& service,
+                                      std::chrono::milliseconds patience) {
+  const auto answers = askAll<Request, Answer>(request_topic, {request}, answer_topic, is_answer, service, patience);
+  return answers.empty() ? std::nullopt : std::optional(answers.front());
 }
 
 }  // namespace baton

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <vector>
 
 #include "control/parameters.hpp"
 #include "dds/codec.hpp"
@@ -42,14 +43,19 @@ double impedanceForce(const Scenario& scenario, const ControllerConfig& controll
   return Kp * Ke / (Kp + Ke) * (goal.X_WE.p.z() - wall.point_m.z());
 }
 
-void compareForces(const Scenario& scenario, const std::string& recording) {
+/// What each controller that held the baton in contact came to rest at, before the next took over.
+void compareForces(const Scenario& scenario, const nlohmann::ordered_json& swaps, const std::string& recording) {
   const std::map<std::uint64_t, double> force_N = contactForce(recording);
   const auto at = [&](std::uint64_t step) { return force_N.contains(step) ? force_N.at(step) : std::nan(""); };
   std::printf("contact     [N, upwards]            measured     predicted\n");
-  for (std::size_t i = 0; i < scenario.swaps.size(); ++i) {
-    const ControllerConfig& controller = scenario.controller(scenario.swaps[i].to);
-    const bool is_last = i + 1 == scenario.swaps.size();
-    const std::uint64_t until = is_last ? scenario.end_step : scenario.swaps[i + 1].at_step;
+  std::vector<nlohmann::ordered_json> done;
+  for (const auto& swap : swaps) {
+    if (swap.at("done").get<bool>()) done.push_back(swap);
+  }
+  for (std::size_t i = 0; i < done.size(); ++i) {
+    const ControllerConfig& controller = scenario.controller(done[i].at("incoming").get<std::string>());
+    const bool is_last = i + 1 == done.size();
+    const std::uint64_t until = is_last ? scenario.end_step : done[i + 1].at("at_step").get<std::uint64_t>() - 1;
     const double predicted =
         controller.law == "force_pi" ? scenario.trajectory.h_d[2] : impedanceForce(scenario, controller);
     std::printf("  %-9s at %.1f s, at rest   %10.6f    %10.6f  (%s)\n", controller.name.c_str(),
@@ -91,7 +97,7 @@ ExitCode demo(const RunRequest& request) {
     return run_code;
   }
   const std::string recording = session.info().recording;
-  compareForces(scenario, recording);
+  compareForces(scenario, result.at("swaps"), recording);
 
   std::printf("\nreplaying the first 2 seconds of the recording, as its own writers on DDS\n");
   const ExitCode replay_code = runProgram(siblingProgram("baton-replayer"),
@@ -111,8 +117,8 @@ void addDemoCommand(CLI::App& app, ExitCode& exit_code) {
   const auto request = std::make_shared<RunRequest>();
   request->scenario = "demo";
   request->cell = "demo";
-  CLI::App* command =
-      app.add_subcommand("demo", "the main job in a minute: path, contact, two live handovers, recording, replay");
+  CLI::App* command = app.add_subcommand(
+      "demo", "the main job in a minute: path, contact, live handovers, a refusal, a failover, recording, replay");
   addCellOptions(*command, request->cell, request->domain);
   command->callback([=, &exit_code] { exit_code = demo(*request); });
 }

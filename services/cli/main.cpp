@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "bag_command.hpp"
+#include "baton_commands.hpp"
 #include "branch_command.hpp"
 #include "demo_command.hpp"
 #include "figures_command.hpp"
@@ -32,7 +33,8 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     baton::addDemoCommand(app, exit_code);
     baton::addRunCommands(app, exit_code);
-    baton::addOperateCommands(app, exit_code);
+    baton::addBatonCommands(app, exit_code);
+    addOperateCommands(app, exit_code);
     baton::addParamCommand(app);
     baton::addReplayCommand(app, exit_code);
     baton::addBagCommand(app, exit_code);

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <optional>
 
+#include "cell_target.hpp"
 #include "latest_by_name.hpp"
 #include "messages/state_names.hpp"
 #include "run_commands.hpp"
@@ -22,30 +22,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using ull = unsigned long long;
 
-struct Target {
-  std::string cell = "lab";
-  int domain = 0;
-  bool json = false;
-};
-
-msg::SimStatus simStatus(CellClient& client) {
-  const auto status = client.latest(dds::topics::kSimStatus);
-  if (!status)
-    throw UnavailableError("the plant of run " + client.info().run + " says nothing; see `baton logs plant`");
-  return *status;
-}
-
-std::string effortText(const std::vector<double>& efforts) {
-  std::string text;
-  for (const double effort : efforts) {
-    std::array<char, 32> number{};
-    std::snprintf(number.data(), number.size(), "%s%.4f", text.empty() ? "" : " ", effort);
-    text += number.data();
-  }
-  return text;
-}
-
-void status(const Target& target) {
+void status(const CellTarget& target) {
   CellClient client(CellClient::find(target.domain, target.cell));
   const Scenario scenario = loadScenario(keptScenario(client.info()), keptRobot(client.info()));
   const msg::SimStatus sim = simStatus(client);
@@ -97,104 +74,6 @@ void status(const Target& target) {
   }
 }
 
-void controllers(const Target& target) {
-  CellClient client(CellClient::find(target.domain, target.cell));
-  const Scenario scenario = loadScenario(keptScenario(client.info()), keptRobot(client.info()));
-  std::vector<std::string> expected = controllerNames(scenario);
-  for (const auto& [name, service] : latestByName(client, dds::topics::kServiceStatus, expected)) {
-    if (service.state() == msg::SERVICE_FAILED) std::erase(expected, name);  // it will not speak any more
-  }
-  const auto all = latestByName(client, dds::topics::kControllerStatus, expected);
-  Json json = Json::array();
-  if (!target.json)
-    std::printf("%-16s %-28s %-9s %10s  %-32s %s\n", "name", "law", "state", "step", "effort [N m or N]",
-                "would change by");
-  for (const ControllerConfig& config : scenario.controllers) {
-    const auto found = all.find(config.name);
-    if (found == all.end()) {
-      if (target.json) {
-        json.push_back({{"name", config.name}, {"law", config.law}, {"state", "silent"}});
-      } else {
-        std::printf("%-16s %-28s silent\n", config.name.c_str(), config.law.c_str());
-      }
-      continue;
-    }
-    const msg::ControllerStatus& one = found->second;
-    if (target.json) {
-      json.push_back({{"name", config.name},
-                      {"law", one.law().c_str()},
-                      {"state", toString(one.state())},
-                      {"step", one.step()},
-                      {"uses_force", one.uses_force()},
-                      {"effort", one.effort()},
-                      {"effort_gap", one.effort_gap()},
-                      {"text", one.text().c_str()}});
-    } else {
-      std::printf("%-16s %-28s %-9s %10llu  %-32s %s%s\n", config.name.c_str(), one.law().c_str(),
-                  toString(one.state()), ull{one.step()}, effortText(one.effort()).c_str(),
-                  effortText(one.effort_gap()).c_str(), one.text().c_str());
-    }
-  }
-  if (target.json) std::cout << toText(json) << '\n';
-}
-
-void swap(const Target& target, const std::string& name, std::uint64_t at_step, bool force, ExitCode& exit_code) {
-  CellClient client(CellClient::find(target.domain, target.cell));
-  msg::SwapRequest request;
-  request.request_id(CellClient::newRequestId());
-  if (name.size() >= msg::MAX_NAME) throw UsageError("controller names have at most 31 characters");
-  request.target(name);
-  request.at_step(at_step);
-  request.force(force);
-  const auto outcome = client.ask<msg::SwapRequest, msg::SwapOutcome>(
-      dds::topics::kSwapRequest, request, dds::topics::kSwapOutcome,
-      [&](const msg::SwapOutcome& one) { return one.request_id() == request.request_id(); }, kPlantName);
-  if (!outcome) {
-    const msg::SimStatus sim = simStatus(client);
-    if (sim.state() == msg::SIM_STATE_PAUSED) {
-      throw UnavailableError(
-          "asked, but the run is paused: the handover takes place once it goes on (`baton sim resume`)");
-    }
-    throw UnavailableError("no outcome yet: the run stands at step " + std::to_string(sim.step()) + " and " +
-                           (at_step > sim.step() ? "the handover is for step " + std::to_string(at_step)
-                                                 : "waits for " + std::string(sim.waiting_for().c_str())));
-  }
-  exit_code = outcome->done() ? ExitCode::kOk : ExitCode::kFailed;
-  if (target.json) {
-    std::cout << toText(Json{{"done", outcome->done()},
-                             {"outgoing", outcome->outgoing().c_str()},
-                             {"incoming", outcome->incoming().c_str()},
-                             {"decided_at_step", outcome->decided_at_step()},
-                             {"at_step", outcome->at_step()},
-                             {"blend_steps", outcome->blend_steps()},
-                             {"raw_effort_step", outcome->raw_effort_step()},
-                             {"applied_effort_step", outcome->applied_effort_step()},
-                             {"reason", outcome->reason().c_str()}})
-              << '\n';
-  } else if (outcome->done()) {
-    std::printf("%s holds the baton since step %llu, asked at step %llu\n", outcome->incoming().c_str(),
-                ull{outcome->at_step()}, ull{outcome->decided_at_step()});
-    std::printf("torques apart   %s (fades over %llu steps)\nthe joints felt %s\n",
-                effortText(outcome->raw_effort_step()).c_str(), ull{outcome->blend_steps()},
-                effortText(outcome->applied_effort_step()).c_str());
-  } else {
-    std::printf("refused: %s\n", outcome->reason().c_str());
-  }
-}
-
-/// On the wire 0 stands for no step in particular.
-std::uint64_t stepToCome(std::uint64_t step) {
-  if (step == 0) throw UsageError("--at 0: expected a step that is still to come; leave --at out for now");
-  return step;
-}
-
-/// The step at a time of the run.
-std::uint64_t stepAt(CellClient& client, double time_s) {
-  const double steps = std::round(time_s * 1e9 / static_cast<double>(simStatus(client).step_ns()));
-  if (!(steps >= 1.0 && steps < 1e18)) throw UsageError("--at-time: expected a time after the first step");
-  return static_cast<std::uint64_t>(steps);
-}
-
 /// Waits until the run stands still again, at `goal` or wherever it was stopped; as long as it moves.
 std::uint64_t stepReached(CellClient& client, std::uint64_t goal) {
   std::uint64_t step = simStatus(client).step();
@@ -212,7 +91,8 @@ std::uint64_t stepReached(CellClient& client, std::uint64_t goal) {
   }
 }
 
-void sim(const Target& target, const msg::SimRequest& what, const std::optional<double>& at_s, ExitCode& exit_code) {
+void sim(const CellTarget& target, const msg::SimRequest& what, const std::optional<double>& at_s,
+         ExitCode& exit_code) {
   CellClient client(CellClient::find(target.domain, target.cell));
   msg::SimRequest request = what;
   if (at_s) request.at_step(stepAt(client, *at_s));
@@ -239,7 +119,7 @@ void sim(const Target& target, const msg::SimRequest& what, const std::optional<
   }
 }
 
-void recordStatus(const Target& target, ExitCode& exit_code) {
+void recordStatus(const CellTarget& target, ExitCode& exit_code) {
   CellClient client(CellClient::find(target.domain, target.cell));
   if (client.info().recording.empty()) throw UnavailableError("run " + client.info().run + " has no recorder");
   const auto status = client.latest(dds::topics::kRecorderStatus);
@@ -263,15 +143,13 @@ void recordStatus(const Target& target, ExitCode& exit_code) {
   }
 }
 
-void addSimCommands(CLI::App& app, const std::shared_ptr<Target>& target, ExitCode& exit_code) {
+void addSimCommands(CLI::App& app, const std::shared_ptr<CellTarget>& target, ExitCode& exit_code) {
   CLI::App* command = app.add_subcommand("sim", "pause, resume, step, change the rate, stop");
   command->require_subcommand(1);
   const auto request = std::make_shared<msg::SimRequest>();
   const auto at_s = std::make_shared<std::optional<double>>();
   const auto add = [&](const char* name, const char* help, msg::SimAction action) {
-    CLI::App* sub = command->add_subcommand(name, help);
-    addCellOptions(*sub, target->cell, target->domain);
-    sub->add_flag("--json", target->json, "print JSON");
+    CLI::App* sub = addCellCommand(*command, *target, name, help);
     sub->callback([=, &exit_code] {
       request->action(action);
       sim(*target, *request, *at_s, exit_code);
@@ -311,36 +189,14 @@ void addSimCommands(CLI::App& app, const std::shared_ptr<Target>& target, ExitCo
 }  // namespace
 
 void addOperateCommands(CLI::App& app, ExitCode& exit_code) {
-  const auto target = std::make_shared<Target>();
-  const auto add = [&](const char* name, const char* help) {
-    CLI::App* command = app.add_subcommand(name, help);
-    addCellOptions(*command, target->cell, target->domain);
-    command->add_flag("--json", target->json, "print JSON");
-    return command;
-  };
-  add("status", "how the run and its services stand")->callback([=] { status(*target); });
-  add("controllers", "every controller: law, state, what it commands or would command")->callback([=] {
-    controllers(*target);
-  });
-
-  const auto name = std::make_shared<std::string>();
-  const auto at_step = std::make_shared<std::uint64_t>(0);
-  const auto force = std::make_shared<bool>(false);
-  CLI::App* swap_command = add("swap", "hand the baton to another controller");
-  swap_command->add_option("name", *name, "the controller that takes over")->required();
-  swap_command->add_option_function<std::uint64_t>(
-      "--at", [at_step](const std::uint64_t& step) { *at_step = stepToCome(step); },
-      "step at which it takes over (default: as soon as the margin allows)");
-  swap_command->add_flag("--force", *force, "even if the forecast jump is above the scenario's limit");
-  swap_command->callback([=, &exit_code] { swap(*target, *name, *at_step, *force, exit_code); });
-
+  const auto target = std::make_shared<CellTarget>();
+  addCellCommand(app, *target, "status", "how the run and its services stand")->callback([=] { status(*target); });
   addSimCommands(app, target, exit_code);
   CLI::App* record = app.add_subcommand("record", "the recorder of the run");
   record->require_subcommand(1);
-  CLI::App* record_status = record->add_subcommand("status", "what has been recorded so far");
-  addCellOptions(*record_status, target->cell, target->domain);
-  record_status->add_flag("--json", target->json, "print JSON");
-  record_status->callback([=, &exit_code] { recordStatus(*target, exit_code); });
+  addCellCommand(*record, *target, "status", "what has been recorded so far")->callback([=, &exit_code] {
+    recordStatus(*target, exit_code);
+  });
 }
 
 }  // namespace baton

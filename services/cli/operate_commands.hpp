@@ -1,4 +1,4 @@
-/// `baton status`, `controllers`, `swap`, `sim`, `record`: what an operator asks of a run that is up.
+/// `baton status`, `sim`, `record`: what an operator asks of a run that is up.
 #pragma once
 
 #include <CLI/CLI.hpp>

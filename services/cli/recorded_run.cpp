@@ -172,7 +172,8 @@ std::string swapsText(const std::vector<PlannedSwap>& swaps, const Scenario& sce
     if (swap.force) text += ", force: true";
     if (swap.hard) text += ", hard: true";
     if (swap.blend_steps) text += ", blend_s: " + secondsText(*swap.blend_steps, scenario);
-    if (swap.may_be_refused) text += ", may_be_refused: true";
+    if (swap.expect == SwapExpectation::kRefused) text += ", expect: refused";
+    if (swap.expect == SwapExpectation::kAny) text += ", expect: any";
     entries.push_back(text + "}");
   }
   return listText(entries);
@@ -182,7 +183,7 @@ std::string repeatingScenario(const RecordedRun& run, std::uint64_t end_step) {
   std::vector<PlannedSwap> swaps = swapsOf(run);
   std::erase_if(swaps, [&](const PlannedSwap& swap) { return swap.at_step >= end_step; });
   // What was refused then is refused again.
-  for (PlannedSwap& swap : swaps) swap.may_be_refused = true;
+  for (PlannedSwap& swap : swaps) swap.expect = SwapExpectation::kAny;
   const std::string text = editScenario(run.scenario_text, {{"robot", "./robot.yaml"},
                                                             {"duration_s", secondsText(end_step, run.scenario)},
                                                             {"rate", "max"},
@@ -190,7 +191,11 @@ std::string repeatingScenario(const RecordedRun& run, std::uint64_t end_step) {
                                                             {"swaps", swapsText(swaps, run.scenario)},
                                                             {"failures", failuresText(run)},
                                                             {"stops", stopsText(run)}});
-  return appendToScenario(text, "changes", changeEntries(run));
+  // A message that is lost or a process that is struck changes no byte but by what was decided about it; numbers do.
+  const std::vector<Fault>& faults = run.scenario.faults;
+  const std::string spared =
+      keepInScenario(text, "faults", [&](std::size_t index) { return isOfValues(faults.at(index).kind); });
+  return appendToScenario(spared, "changes", changeEntries(run));
 }
 
 void writeText(const fs::path& file, const std::string& text) {

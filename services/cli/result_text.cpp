@@ -27,6 +27,10 @@ void printSwap(const nlohmann::ordered_json& swap) {
   }
   std::printf(": torques %.2g apart, the joints felt a change of %.2g", largest(swap.at("raw_effort_step")),
               largest(swap.at("applied_effort_step")));
+  if (const auto& report = swap.at("report"); !report.is_null() && report.at("rate_limit_hits") > 0) {
+    std::printf(", %llu times faster than max_effort_rate",
+                static_cast<unsigned long long>(report.at("rate_limit_hits")));
+  }
   std::printf("%s%s\n", reason.empty() ? "" : "; ", reason.c_str());
 }
 

@@ -27,8 +27,8 @@ LawRunner::LawRunner(Service& service)
       law_(info_.make(service.scenario().robot, config_.parameters)),
       inputs_(info_.uses_force ? 3 : 2),
       effort_(JointVector::Zero(service.scenario().robot.size())),
-      command_out_(service.output(dds::topics::kJointCommand, withRecorder({kPlantName}, service.scenario()))),
-      shadow_out_(service.output(dds::topics::kShadowCommand, withRecorder({}, service.scenario()))),
+      command_out_(service, dds::topics::kJointCommand, withRecorder({kPlantName}, service.scenario())),
+      shadow_out_(service, dds::topics::kShadowCommand, withRecorder({}, service.scenario())),
       ack_out_(service.output(dds::topics::kSwapAck, withRecorder({kPlantName}, service.scenario()))),
       status_out_(service.output(dds::topics::kControllerStatus)) {
   service.output(dds::topics::kParameterStatus).write(parameterReport(config_));

@@ -11,6 +11,7 @@
 
 #include "control/law.hpp"
 #include "runtime/checkpoint.hpp"
+#include "runtime/loop_output.hpp"
 #include "runtime/service.hpp"
 #include "time/step_inputs.hpp"
 
@@ -74,8 +75,8 @@ class LawRunner {
   std::vector<std::uint64_t> restarts_;      // steps at which the scenario has it return as a new process
   std::size_t next_restart_ = 0;
 
-  dds::Writer<msg::JointCommand>& command_out_;
-  dds::Writer<msg::JointCommand>& shadow_out_;
+  LoopOutput<msg::JointCommand> command_out_;
+  LoopOutput<msg::JointCommand> shadow_out_;
   dds::Writer<msg::SwapAck>& ack_out_;
   dds::Writer<msg::ControllerStatus>& status_out_;
   msg::JointCommand message_;

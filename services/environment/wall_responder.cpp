@@ -17,7 +17,7 @@ std::vector<std::string> readersOf(const Scenario& scenario) {
 
 WallResponder::WallResponder(Service& service)
     : service_(service),
-      contact_out_(service.output(dds::topics::kContact, readersOf(service.scenario()))),
+      contact_out_(service, dds::topics::kContact, readersOf(service.scenario())),
       answer_(service.scenario()) {
   service.input(dds::topics::kPlantState, {kPlantName},
                 [this](const msg::PlantState& message, const dds::RawSample&) { onState(message); });
@@ -31,9 +31,9 @@ WallResponder::WallResponder(Service& service)
 
 void WallResponder::onState(const msg::PlantState& message) {
   if (!service_.isReady() || service_.isOver() || !answer_(message, message_)) return;
+  service_.at(message.step());
   contact_out_.write(message_);
   answered_ = message.step();
-  service_.at(message.step());
   service_.stepDone(message.step());
 }
 

@@ -1,6 +1,7 @@
 /// On PlantState(k): Contact(k), the sum over all walls.
 #pragma once
 
+#include "runtime/loop_output.hpp"
 #include "runtime/service.hpp"
 #include "runtime/step_answers.hpp"
 
@@ -14,7 +15,7 @@ class WallResponder {
   void onState(const msg::PlantState& message);
 
   Service& service_;
-  dds::Writer<msg::Contact>& contact_out_;
+  LoopOutput<msg::Contact> contact_out_;
   ContactAnswer answer_;
   msg::Contact message_;
   std::optional<std::uint64_t> answered_;  // the last state

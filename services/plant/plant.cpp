@@ -30,7 +30,7 @@ Plant::Plant(Service& service)
       outgoing_effort_(effort_),
       members_(scenario_.controllers.size()),
       failure_script_(scenario_.failures, controllerNames(scenario_)),
-      state_out_(service.output(dds::topics::kPlantState, servicesBut(kPlantName, scenario_))),
+      state_out_(service, dds::topics::kPlantState, servicesBut(kPlantName, scenario_)),
       again_out_(service.output(dds::topics::kPlantStateAgain)),
       reply_out_(service.output(dds::topics::kSimReply)),
       status_out_(service.output(dds::topics::kSimStatus, servicesBut(kPlantName, scenario_))),

@@ -17,6 +17,7 @@
 #include "control/handover_meter.hpp"
 #include "failure_script.hpp"
 #include "runtime/checkpoint.hpp"
+#include "runtime/loop_output.hpp"
 #include "runtime/service.hpp"
 #include "step_timing.hpp"
 #include "time/baton_arbiter.hpp"
@@ -184,7 +185,7 @@ class Plant {
   std::uint64_t warned_step_ = kNever;
   std::string end_reason_;
 
-  dds::Writer<msg::PlantState>& state_out_;
+  LoopOutput<msg::PlantState> state_out_;
   dds::Writer<msg::PlantState>& again_out_;
   dds::Writer<msg::SimReply>& reply_out_;
   dds::Writer<msg::SimStatus>& status_out_;

@@ -95,8 +95,7 @@ void Plant::onSwapRequest(const msg::SwapRequest& message) {
                           .target = memberCalled(message.target().c_str()),
                           .at_step = message.at_step(),
                           .force = message.force(),
-                          .hard = message.hard(),
-                          .blend_steps = {}};
+                          .hard = message.hard()};
   const std::uint64_t step = master_.step();
   if (message.blend_ns() >= 0) {
     const double steps = static_cast<double>(message.blend_ns()) / static_cast<double>(scenario_.step_ns);

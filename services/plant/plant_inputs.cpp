@@ -1,5 +1,6 @@
 // What arrives at the plant: contacts, commands, the operator's requests, the services' readiness.
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "plant.hpp"
@@ -15,20 +16,35 @@ void Plant::onContact(const msg::Contact& message, const dds::RawSample& sample)
 }
 
 void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sample) {
-  if (message.step() != master_.step()) return;
   const int member = memberCalled(message.controller().c_str());
-  if (!speaksFor(member, sample)) return;
+  if (!speaksFor(member, sample) || master_.isOver()) return;
+  if (message.step() > master_.step() && master_.phase() != SimPhase::kStarting && !arbiter_.hasFailed(member)) {
+    // Its state is known to nobody yet.
+    char wrong[80];
+    std::snprintf(wrong, sizeof wrong, "it commanded step %llu while step %llu was open",
+                  static_cast<unsigned long long>(message.step()), static_cast<unsigned long long>(master_.step()));
+    service_.event(msg::SEVERITY_ERROR, "bad_command", nameOf(member) + ": " + wrong);
+    memberLost(member, wrong);
+    return proceed();
+  }
+  if (message.step() != master_.step()) return;
   const bool from_holder = member == arbiter_.holder() && !master_.hasCommand();
   const bool from_outgoing = member == arbiter_.outgoingAt(message.step()) && !master_.hasOutgoingCommand();
   if (!from_holder && !from_outgoing) return;
 
   JointVector effort;
-  const bool is_usable = fromMessage(message, scenario_.robot.size(), effort);
+  ReasonText objection{};
+  if (!fromMessage(message, scenario_.robot.size(), effort)) {
+    write(objection, "it commanded an effort that is not finite or of the wrong size");
+  } else if (const double largest = effort.cwiseAbs().maxCoeff(); largest > scenario_.baton.max_command) {
+    write(objection, "it commanded %.4g, above the scenario's max_command of %.4g", largest,
+          scenario_.baton.max_command);
+  }
+  const bool is_usable = objection.front() == '\0';
   if (!is_usable) {
     // It never reaches the integrator: the joints keep their torque for this step, and the next one is somebody else's.
     effort = arm_.holdingEffort(message.step());
-    service_.event(msg::SEVERITY_ERROR, "bad_command",
-                   nameOf(member) + " commanded an effort that is not finite or of the wrong size");
+    service_.event(msg::SEVERITY_ERROR, "bad_command", nameOf(member) + ": " + objection.data());
   }
   if (from_holder) {
     effort_ = effort;
@@ -43,7 +59,7 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
   if (members_[static_cast<std::size_t>(member)].fails_when_commanded) {
     commandedAsPlanned(member);
   } else if (!is_usable) {
-    memberLost(member, "it commanded an effort that is not finite or of the wrong size");
+    memberLost(member, objection.data());
   }
   proceed();
 }

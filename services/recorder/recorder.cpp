@@ -249,6 +249,7 @@ void Recorder::acknowledge(bool is_idle) {
   acknowledged_ = std::min_element(loop_steps_.begin(), loop_steps_.end(), [](const auto& a, const auto& b) {
                     return a.second < b.second;
                   })->second;
+  service_.at(acknowledged_);
   const std::uint64_t credit = service_.scenario().recording.credit_steps;
   const bool is_due = acknowledged_ >= published_ + std::max<std::uint64_t>(1, credit / 8);
   if (is_due || (is_idle && acknowledged_ != published_)) {

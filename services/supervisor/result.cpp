@@ -16,17 +16,35 @@ const char* stateName(const RunResult& result) {
   return result.sim.state() == msg::SIM_STATE_FINISHED ? "finished" : "aborted";
 }
 
-Json toJson(const msg::SwapOutcome& swap) {
+/// What it did to the arm; null when that was not measured.
+Json effectOf(const msg::SwapOutcome& swap, const std::vector<msg::SwapReport>& reports) {
+  for (const msg::SwapReport& report : reports) {
+    if (report.take() != swap.take() || report.plan_id() != swap.plan_id() || report.at_step() != swap.at_step())
+      continue;
+    return {{"steps", report.steps()},
+            {"cut_short", report.cut_short()},
+            {"max_effort_rate", report.max_effort_rate()},
+            {"rate_limit_hits", report.rate_limit_hits()},
+            {"peak_force_deviation_N", report.peak_force_deviation()},
+            {"blend_energy_J", report.blend_energy()}};
+  }
+  return nullptr;
+}
+
+Json toJson(const msg::SwapOutcome& swap, const std::vector<msg::SwapReport>& reports) {
   return {{"done", swap.done()},
           {"outgoing", swap.outgoing().c_str()},
           {"incoming", swap.incoming().c_str()},
           {"request_id", swap.request_id()},
+          {"plan_id", swap.plan_id()},
           {"decided_at_step", swap.decided_at_step()},
           {"at_step", swap.at_step()},
+          {"hard", swap.hard()},
           {"blend_steps", swap.blend_steps()},
           {"raw_effort_step", swap.raw_effort_step()},
           {"applied_effort_step", swap.applied_effort_step()},
-          {"reason", swap.reason().c_str()}};
+          {"reason", swap.reason().c_str()},
+          {"report", swap.done() ? effectOf(swap, reports) : Json()}};
 }
 
 }  // namespace
@@ -47,6 +65,7 @@ void writeResult(const RunInfo& info, const Scenario& scenario, const RunResult&
             {"first_step", result.sim.first_step()},
             {"steps", result.sim.step()},
             {"sim_time_s", sim_time_s},
+            {"holder", result.sim.holder().c_str()},
             {"elapsed_s", result.sim.elapsed_s()},
             {"real_time_ratio", result.sim.elapsed_s() > 0.0 ? moved_s / result.sim.elapsed_s() : 0.0},
             {"startup_s", result.startup_s},
@@ -64,7 +83,7 @@ void writeResult(const RunInfo& info, const Scenario& scenario, const RunResult&
                              {"lost", result.recorder.lost()}};
   }
   json["swaps"] = Json::array();
-  for (const msg::SwapOutcome& swap : result.swaps) json["swaps"].push_back(toJson(swap));
+  for (const msg::SwapOutcome& swap : result.swaps) json["swaps"].push_back(toJson(swap, result.reports));
   json["resident_kB"] = result.resident_kB;
 
   const std::filesystem::path file = std::filesystem::path(info.folder) / "result.json";

@@ -49,6 +49,8 @@ Supervisor::Supervisor(Service& service, Deployment deployment)
   service.input(dds::topics::kSwapOutcome, {}, [this](const msg::SwapOutcome& outcome, const dds::RawSample&) {
     if (!outcome.dry_run()) swaps_.push_back(outcome);
   });
+  service.input(dds::topics::kSwapReport, {},
+                [this](const msg::SwapReport& report, const dds::RawSample&) { reports_.push_back(report); });
 }
 
 ExitCode Supervisor::run() {
@@ -56,19 +58,7 @@ ExitCode Supervisor::run() {
   service_.run();  // what the handlers wrote is ours alone from here on
   // A run that was reset is its last take.
   std::erase_if(swaps_, [&](const msg::SwapOutcome& swap) { return swap.take() != sim_.take(); });
-  const std::vector<PlannedSwap>& planned = service_.scenario().swaps;
-  const bool was_refused = std::any_of(swaps_.begin(), swaps_.end(), [&](const msg::SwapOutcome& swap) {
-    if (swap.request_id() != 0 || swap.done() || swap.at_step() >= sim_.step()) return false;  // the run ended before
-    return std::none_of(planned.begin(), planned.end(), [&](const PlannedSwap& one) {
-      return one.may_be_refused && one.at_step == swap.at_step() && swap.incoming() == one.to.c_str();
-    });
-  });
-  if (was_refused) fail(ExitCode::kFailed, "a handover that the scenario plans was refused");
-  for (const msg::SwapOutcome& swap : swaps_) {
-    if (swap.done() && swap.plan_id() == 0) {
-      fail(ExitCode::kFailed, std::string(swap.outgoing().c_str()) + " lost the baton: " + swap.reason().c_str());
-    }
-  }
+  for (const msg::SwapOutcome& swap : swaps_) judge(swap);
   writeResult(deployment_.info, service_.scenario(),
               {.exit_code = exit_code_,
                .reason = reason_,
@@ -77,8 +67,27 @@ ExitCode Supervisor::run() {
                .timing = timing_,
                .recorder = recorder_,
                .swaps = swaps_,
+               .reports = reports_,
                .resident_kB = resident_});
   return exit_code_;
+}
+
+/// A run has failed when a handover went otherwise than the scenario says.
+void Supervisor::judge(const msg::SwapOutcome& swap) {
+  const Scenario& scenario = service_.scenario();
+  const std::string outgoing = swap.outgoing().c_str();
+  if (swap.done() && swap.plan_id() == 0 && !scenario.wantsFaultOf(outgoing) && !scenario.plansFailureOf(outgoing)) {
+    fail(ExitCode::kFailed, outgoing + " lost the baton: " + swap.reason().c_str());
+  }
+  for (const PlannedSwap& planned : scenario.swaps) {
+    const bool has_come = swap.at_step() < sim_.step();  // else the run ended before
+    if (swap.request_id() != 0 || planned.at_step != swap.at_step() || planned.to != swap.incoming().c_str()) continue;
+    if (!swap.done() && planned.expect == SwapExpectation::kDone && has_come) {
+      fail(ExitCode::kFailed, "a handover that the scenario plans was refused");
+    } else if (swap.done() && planned.expect == SwapExpectation::kRefused) {
+      fail(ExitCode::kFailed, "a handover took place that the scenario expects to be refused");
+    }
+  }
 }
 
 // --- start
@@ -165,7 +174,7 @@ void Supervisor::childFailed(Child& child, const Child::End& end) {
   const bool is_restarted = has_started && restarts_left_[name]-- > 0;
   if (has_started && (is_controller || is_restarted)) {
     spdlog::error("{}\n{}", why, lastLines(child.command().log_file, 5));
-    fail(ExitCode::kFailed, why);
+    if (!service_.scenario().wantsFaultOf(name)) fail(ExitCode::kFailed, why);
   }
   // Who comes back is waited for like anybody who is late; what the end of the others means, the plant decides.
   if (is_restarted && !is_controller) return restart(name);

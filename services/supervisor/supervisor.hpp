@@ -37,6 +37,7 @@ class Supervisor {
   void start(const std::string& role, const std::string& name, const std::string& law);
   void childEnded(Child& child, const Child::End& end);
   void childFailed(Child& child, const Child::End& end);
+  void judge(const msg::SwapOutcome& swap);
   void fail(ExitCode code, const std::string& reason);
   void restart(const std::string& name);
   void onSimStatus(const msg::SimStatus& status);
@@ -68,6 +69,7 @@ class Supervisor {
   msg::TimingStatus timing_;
   msg::RecorderStatus recorder_;
   std::vector<msg::SwapOutcome> swaps_;
+  std::vector<msg::SwapReport> reports_;
   std::map<std::string, long> resident_;  // [kB], by service
 
   // On behalf of a child that died; a writer each, so that no death replaces another's word.

@@ -4,8 +4,8 @@ namespace baton {
 ReferenceSource::ReferenceSource(Service& service)
     : service_(service),
       answer_(service.scenario()),
-      reference_out_(service.output(dds::topics::kReference,
-                                    withRecorder(controllerNames(service.scenario()), service.scenario()))) {
+      reference_out_(service, dds::topics::kReference,
+                     withRecorder(controllerNames(service.scenario()), service.scenario())) {
   prepare(message_);
   service.input(dds::topics::kPlantState, {kPlantName},
                 [this](const msg::PlantState& message, const dds::RawSample&) { onState(message); });
@@ -19,10 +19,10 @@ ReferenceSource::ReferenceSource(Service& service)
 
 void ReferenceSource::onState(const msg::PlantState& message) {
   if (!service_.isReady() || service_.isOver()) return;
+  service_.at(message.step());
   if (!answered_) publish(message.step());
   answered_ = message.step();
   publish(message.step() + 1);
-  service_.at(message.step());
   service_.stepDone(message.step());
 }
 

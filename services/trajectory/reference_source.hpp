@@ -2,6 +2,7 @@
 /// is also answered with its own reference, which nobody could have sent before.
 #pragma once
 
+#include "runtime/loop_output.hpp"
 #include "runtime/service.hpp"
 #include "runtime/step_answers.hpp"
 
@@ -17,7 +18,7 @@ class ReferenceSource {
 
   Service& service_;
   ReferenceAnswer answer_;
-  dds::Writer<msg::Reference>& reference_out_;
+  LoopOutput<msg::Reference> reference_out_;
   msg::Reference message_;
   std::optional<std::uint64_t> answered_;  // the last state
 };

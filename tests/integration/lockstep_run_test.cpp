@@ -131,7 +131,13 @@ TEST(LockstepRun, DemoEndsWhereTheoryPutsIt) {
   EXPECT_NEAR(error(before_force, 0), 0.0, 1e-6);
   EXPECT_NEAR(error(before_force, 1), 0.0, 1e-6);
   // Force control at rest: f_e = f_d.
-  EXPECT_NEAR(contacts.back().force()[2], 3.0, kRelative * 3.0);
+  const std::size_t before_fault = 15999;
+  EXPECT_NEAR(contacts.at(before_fault).force()[2], 3.0, kRelative * 3.0);
+  // Its command at step 16000 is not a number: the joints keep their torque, then impedance control has the arm again.
+  EXPECT_EQ(states.at(before_fault + 2).applied_effort(), states.at(before_fault + 1).applied_effort());
+  EXPECT_STREQ(states.at(before_fault + 1).holder().c_str(), "force");
+  EXPECT_STREQ(states.at(before_fault + 2).holder().c_str(), "impedance");
+  EXPECT_NEAR(contacts.back().force()[2], force, kRelative * force);
 }
 
 }  // namespace

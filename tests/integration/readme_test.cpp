@@ -57,8 +57,9 @@ TEST(Readme, TheDemoShowsWhatItPromises) {
   ASSERT_EQ(demo.exit_code, 0) << demo.out << demo.err;
   // Numbers that are the same on every machine.
   for (const char* line :
-       {"steps       16000, 8 s of motion", "step   2000  tracking -> impedance: torques 0.00015 apart",
-        "step   8000  impedance -> force", "2.500000      2.500000", "3.000000      3.000000", ", complete",
+       {"steps       20000, 10 s of motion", "step   1000  tracking -> force: refused, force controls force",
+        "step   2000  tracking -> impedance: torques 0.00015 apart", "step   8000  impedance -> force",
+        "step  16001  force -> impedance", "2.500000      2.500000", "3.000000      3.000000", ", complete",
         "replaying the first 2 seconds"}) {
     EXPECT_NE(demo.out.find(line), std::string::npos) << line << "\n" << demo.out;
   }

@@ -203,7 +203,7 @@ TEST(Rerun, WhoHasFailedBeforeTheFirstStepNeverHoldsIt) {
   const std::string file = (bench.folder() / "absent.mcap").string();
   const std::string scenario = bench.write(
       "absent.yaml", editScenario(shortContact(), {{"baton", "{fallback: [pd]}"},
-                                                   {"swaps", "[{at_s: 0.2, to: tracking, may_be_refused: true}]"},
+                                                   {"swaps", "[{at_s: 0.2, to: tracking, expect: any}]"},
                                                    {"failures", "[{controller: tracking, returns_at_s: 0.1}]"}}));
   std::ignore = bench.batonJson({"run", scenario, "--out", file, "--json"});
   const std::vector<std::string> holders = holdersOf(file);

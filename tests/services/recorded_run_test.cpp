@@ -47,7 +47,8 @@ TEST(RecordedRun, RepeatsHandoversInTheOrderThePlantTakesThem) {
   EXPECT_EQ(again.swaps[1].blend_steps, 123U);
   EXPECT_EQ(again.swaps[2].at_step, 400U);
   EXPECT_TRUE(again.swaps[2].hard);
-  for (const PlannedSwap& one : again.swaps) EXPECT_TRUE(one.may_be_refused) << "what was refused is refused again";
+  for (const PlannedSwap& one : again.swaps)
+    EXPECT_EQ(one.expect, SwapExpectation::kAny) << "what was refused is refused again";
   EXPECT_EQ(again.end_step, 700U);
   EXPECT_EQ(again.late_policy, LatePolicy::kWait) << "no timer decides";
 }

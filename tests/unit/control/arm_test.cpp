@@ -15,7 +15,7 @@
 namespace baton {
 namespace {
 
-constexpr double kBrakeRate = 20.0;  // 1/s, as arm.hpp says
+constexpr double kBrakeRate = 20.0;    // 1/s, as arm.hpp says
 constexpr std::uint64_t kBlend = 100;  // steps
 const JointVector kStart = Vector3(0.3, 0.05, 0.1);
 

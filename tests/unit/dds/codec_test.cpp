@@ -64,8 +64,10 @@ using AllTypes =
     testing::Types<msg::Quaternion, msg::PlantState, msg::Contact, msg::Reference, msg::JointCommand, msg::Checkpoint,
                    msg::SimRequest, msg::SimReply, msg::SimStatus, msg::TimeSpread, msg::StepSpread, msg::TimingStatus,
                    msg::Rewind, msg::RewindAck, msg::SwapRequest, msg::SwapPlan, msg::SwapAck, msg::SwapOutcome,
-                   msg::SwapReport, msg::BatonMember, msg::BatonStatus, msg::ControllerStatus, msg::Parameter, msg::ParameterStatus, msg::ParameterValue, msg::ParameterRequest, msg::ParameterReply, msg::Decision, msg::ServiceStatus, msg::Event,
-                   msg::StreamManifest, msg::ServiceManifest, msg::RecorderStatus, msg::ReplayStatus>;
+                   msg::SwapReport, msg::BatonMember, msg::BatonStatus, msg::ControllerStatus, msg::Parameter,
+                   msg::ParameterStatus, msg::ParameterValue, msg::ParameterRequest, msg::ParameterReply, msg::Decision,
+                   msg::ServiceStatus, msg::Event, msg::StreamManifest, msg::ServiceManifest, msg::RecorderStatus,
+                   msg::ReplayStatus>;
 TYPED_TEST_SUITE(CodecTest, AllTypes);
 
 template <class... Types>

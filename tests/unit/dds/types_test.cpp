@@ -96,8 +96,10 @@ std::vector<Row> topicTable() {
   list(topics::kPlantState, topics::kContact, topics::kReference, topics::kJointCommand, topics::kShadowCommand,
        topics::kCheckpoint, topics::kSimRequest, topics::kSimReply, topics::kSimStatus, topics::kTimingStatus,
        topics::kRewind, topics::kRewindAck, topics::kSwapRequest, topics::kSwapPlan, topics::kSwapAck,
-       topics::kSwapOutcome, topics::kSwapReport, topics::kBatonStatus, topics::kControllerStatus, topics::kParameterStatus, topics::kParameterRequest, topics::kParameterReply, topics::kDecision, topics::kServiceStatus,
-       topics::kServiceManifest, topics::kEvent, topics::kRecorderStatus, topics::kReplayStatus);
+       topics::kSwapOutcome, topics::kSwapReport, topics::kBatonStatus, topics::kControllerStatus,
+       topics::kParameterStatus, topics::kParameterRequest, topics::kParameterReply, topics::kDecision,
+       topics::kServiceStatus, topics::kServiceManifest, topics::kEvent, topics::kRecorderStatus,
+       topics::kReplayStatus);
   return rows;
 }
 

@@ -121,14 +121,22 @@ TEST(DeployedDemo, TellsTheStoryItsCommentsTell) {
     trajectory.evaluate(static_cast<double>(step) * s.stepSeconds(), reference);
     return reference.X_WE.p.z();
   };
-  ASSERT_EQ(s.swaps.size(), 2u);
+  ASSERT_EQ(s.swaps.size(), 3u);
   EXPECT_EQ(s.active, "tracking");
-  // The first handover in free motion, the second with the path inside the wall.
-  EXPECT_EQ(s.swaps[0].to, "impedance");
-  EXPECT_NEAR(height(s.swaps[0].at_step), 0.555, 0.5e-3);
+  // One that is refused, before the wall; a handover in free motion, and one with the path inside the wall.
+  EXPECT_EQ(s.swaps[0].to, "force");
+  EXPECT_EQ(s.swaps[0].expect, SwapExpectation::kRefused);
   EXPECT_LT(height(s.swaps[0].at_step), wall);
-  EXPECT_EQ(s.swaps[1].to, "force");
-  EXPECT_NEAR(height(s.swaps[1].at_step), wall + 0.025, 1e-12);
+  EXPECT_EQ(s.swaps[1].to, "impedance");
+  EXPECT_NEAR(height(s.swaps[1].at_step), 0.555, 0.5e-3);
+  EXPECT_LT(height(s.swaps[1].at_step), wall);
+  EXPECT_EQ(s.swaps[2].to, "force");
+  EXPECT_NEAR(height(s.swaps[2].at_step), wall + 0.025, 1e-12);
+  // Who fails is the holder, when it has come to rest, and the first fallback is impedance.
+  ASSERT_EQ(s.faults.size(), 1u);
+  EXPECT_EQ(s.faults[0].service, "force");
+  EXPECT_EQ(s.faults[0].from_step, 16000u);
+  EXPECT_EQ(s.baton.fallback.at(0), "impedance");
   EXPECT_TRUE(findLaw(s.controller("force").law).requires_contact);
   // The path meets the wall at 1.56 s.
   EXPECT_LT(height(3120), wall);
@@ -169,6 +177,7 @@ TEST(DeployedDemo, ExplainsEveryKey) {
       {"  force_N:", "  noise: {zzz: 1}\n  force_N:"},
       {"- name: tracking", "- zzz: 1\n    name: tracking"},
       {"- {at_s: 1.0", "- {zzz: 1, at_s: 1.0"},
+      {"- {do: nan", "- {zzz: 1, do: nan"},
       {"  margin_steps:", "  zzz: 1\n  margin_steps:"},
       {"  compression:", "  zzz: 1\n  compression:"}};
   std::size_t count = 0;

@@ -33,7 +33,7 @@ swaps:
   - {at_s: 0.4, to: b, force: true, blend_s: 0.0504}
   - {at_s: 0.7, to: c, hard: true}
   - {at_s: 0.713, to: b}
-  - {at_s: 0.714, to: b, may_be_refused: true}
+  - {at_s: 0.714, to: b, expect: any}
 stops:
   - {decided_at_s: 0.9, at_s: 1.5}
   - {decided_at_s: 0.9, at_s: 1.2}
@@ -52,8 +52,9 @@ TEST(ScenarioPlans, GivesEachFieldItsPlace) {
   EXPECT_EQ(s.swaps[0].blend_steps, 50U) << "to the nearest step";
   EXPECT_TRUE(s.swaps[1].hard);
   EXPECT_FALSE(s.swaps[1].blend_steps);
-  EXPECT_FALSE(s.swaps[2].force || s.swaps[2].hard || s.swaps[2].may_be_refused || s.swaps[2].blend_steps);
-  EXPECT_TRUE(s.swaps[3].may_be_refused);
+  EXPECT_FALSE(s.swaps[2].force || s.swaps[2].hard || s.swaps[2].blend_steps);
+  EXPECT_EQ(s.swaps[2].expect, SwapExpectation::kDone);
+  EXPECT_EQ(s.swaps[3].expect, SwapExpectation::kAny);
 
   ASSERT_EQ(s.failures.size(), 3U);
   EXPECT_FALSE(s.failures[0].at_step);
@@ -71,10 +72,9 @@ TEST(ScenarioPlans, GivesEachFieldItsPlace) {
 }
 
 TEST(ScenarioPlans, WhatMayBeRefusedIsNotForeseen) {
-  const std::string plain = replaced(kPlans, ", may_be_refused: true", "");
+  const std::string plain = replaced(kPlans, ", expect: any", "");
   EXPECT_NE(refusal([&] { return parse(plain); }).find("swaps[3].at_s: expected a time not before"), std::string::npos);
-  const std::string early =
-      replaced(kPlans, "at_s: 0.4, to: b, force: true", "at_s: 0.006, to: a, may_be_refused: true");
+  const std::string early = replaced(kPlans, "at_s: 0.4, to: b, force: true", "at_s: 0.006, to: a, expect: any");
   EXPECT_EQ(parse(early).swaps[0].at_step, 6U) << "asked for at step 0, margin 5";
   EXPECT_NE(refusal([&] { return parse(replaced(early, "0.006", "0.005")); }).find("margin_steps + 1"),
             std::string::npos);

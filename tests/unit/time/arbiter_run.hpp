@@ -25,7 +25,7 @@ inline ArbiterConfig fourControllers() {
 
 inline JointVector efforts(double value) { return JointVector::Constant(3, value); }
 
-inline Forecast forecastOf(const JointVector& effort) { return {.is_ready = true, .effort = effort}; }
+inline Forecast readyWith(const JointVector& effort) { return {.is_ready = true, .effort = effort}; }
 inline Forecast notReady(const char* reason) {
   Forecast forecast;
   write(forecast.not_ready, "%s", reason);
@@ -65,7 +65,7 @@ class ArbiterRun {
   }
 
   void forecast(std::uint64_t plan_id, int member, double value) {
-    arbiter.prepareAcknowledged(plan_id, member, forecastOf(efforts(value)));
+    arbiter.prepareAcknowledged(plan_id, member, readyWith(efforts(value)));
   }
 
   void commitAcknowledgedBy(int member) { arbiter.commitAcknowledged(lastPlan().plan_id, member); }

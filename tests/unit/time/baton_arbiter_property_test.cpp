@@ -149,7 +149,7 @@ class RandomLife {
     for (int member = kFirst; member <= kSpare; ++member) {
       const JointVector effort = chance(0.95) ? efforts(uniform(generator_, -60.0, 60.0)) : JointVector();
       if (chance(0.6)) {
-        run.arbiter.prepareAcknowledged(plan, member, chance(0.95) ? forecastOf(effort) : notReady("it says no"));
+        run.arbiter.prepareAcknowledged(plan, member, chance(0.95) ? readyWith(effort) : notReady("it says no"));
       }
       if (chance(0.3)) run.consider();
       if (chance(0.6)) run.arbiter.commitAcknowledged(plan, member);
@@ -245,7 +245,7 @@ TEST(ArbiterProperty, NothingAllocatesOnceItIsMade) {
   arbiter.request({.request_id = 1, .target = kSecond}, 0);
   arbiter.refuseUnknown(2, "nobody", 0);
   arbiter.open(1);
-  arbiter.prepareAcknowledged(1, kSecond, forecastOf(effort));
+  arbiter.prepareAcknowledged(1, kSecond, readyWith(effort));
   arbiter.consider(1, effort, false);
   arbiter.commitAcknowledged(1, kSecond);
   for (std::uint64_t step = 2; step < 10; ++step) arbiter.open(step);

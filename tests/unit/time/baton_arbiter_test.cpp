@@ -304,10 +304,10 @@ TEST(BatonArbiter, RefusesWhoIsNotReady) {
 TEST(BatonArbiter, RefusesAForecastAboveTheLimitUnlessForced) {
   JointVector effort = efforts(0.0);
   effort(1) = -kLimit;
-  EXPECT_EQ(decided(kSecond, forecastOf(effort)).actions.back().kind, Kind::kCommit) << "the limit itself is allowed";
+  EXPECT_EQ(decided(kSecond, readyWith(effort)).actions.back().kind, Kind::kCommit) << "the limit itself is allowed";
   effort(1) = std::nextafter(-kLimit, -100.0);
-  expectRefusedAfterAPlan(decided(kSecond, forecastOf(effort)), "joint 2");
-  EXPECT_EQ(decided(kSecond, forecastOf(effort), true).actions.back().kind, Kind::kCommit);
+  expectRefusedAfterAPlan(decided(kSecond, readyWith(effort)), "joint 2");
+  EXPECT_EQ(decided(kSecond, readyWith(effort), true).actions.back().kind, Kind::kCommit);
 }
 
 TEST(BatonArbiter, ComparesTheForecastWithTheHoldersEffortOfTheSameStep) {
@@ -321,17 +321,17 @@ TEST(BatonArbiter, ComparesTheForecastWithTheHoldersEffortOfTheSameStep) {
 }
 
 TEST(BatonArbiter, RefusesAForceLawOutOfContactEvenIfForced) {
-  expectRefusedAfterAPlan(decided(kForce, forecastOf(efforts(0.0)), true, false), "touches nothing");
-  EXPECT_EQ(decided(kForce, forecastOf(efforts(0.0)), false, true).actions.back().kind, Kind::kCommit);
+  expectRefusedAfterAPlan(decided(kForce, readyWith(efforts(0.0)), true, false), "touches nothing");
+  EXPECT_EQ(decided(kForce, readyWith(efforts(0.0)), false, true).actions.back().kind, Kind::kCommit);
 }
 
 TEST(BatonArbiter, RefusesAForecastThatIsNoEffortEvenIfForced) {
-  expectRefusedAfterAPlan(decided(kSecond, forecastOf(JointVector::Zero(2)), true), "2 efforts");
-  expectRefusedAfterAPlan(decided(kSecond, forecastOf(JointVector()), true), "0 efforts");
+  expectRefusedAfterAPlan(decided(kSecond, readyWith(JointVector::Zero(2)), true), "2 efforts");
+  expectRefusedAfterAPlan(decided(kSecond, readyWith(JointVector()), true), "0 efforts");
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     JointVector effort = efforts(0.0);
     effort(2) = bad;
-    expectRefusedAfterAPlan(decided(kSecond, forecastOf(effort), true), "not 3 finite ones");
+    expectRefusedAfterAPlan(decided(kSecond, readyWith(effort), true), "not 3 finite ones");
   }
 }
 
@@ -379,7 +379,7 @@ TEST(BatonArbiter, RefusesAForecastThatCameAfterItsStep) {
 }
 
 TEST(BatonArbiter, AfterARefusalTheWayIsFree) {
-  ArbiterRun run = decided(kSecond, forecastOf(efforts(2 * kLimit)));
+  ArbiterRun run = decided(kSecond, readyWith(efforts(2 * kLimit)));
   EXPECT_FALSE(run.arbiter.awaits(run.step));
   run.forecast(1, kSecond, 0.0);  // a late word on the cancelled plan
   run.arbiter.commitAcknowledged(1, kSecond);
