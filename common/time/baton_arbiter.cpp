@@ -238,7 +238,7 @@ void BatonArbiter::prepareRewind() noexcept {
   if (phase_ != Phase::kIdle) drop(Kind::kRefused, "the run is reset");
 }
 
-void BatonArbiter::rewind() noexcept {
+void BatonArbiter::rewind(const std::vector<int>& absent) noexcept {
   phase_ = Phase::kIdle;
   holder_ = first_holder_;
   contact_ = false;
@@ -246,11 +246,9 @@ void BatonArbiter::rewind() noexcept {
   handover_at_.reset();
   handed_over_by_ = kBrake;
   holder_failed_at_.reset();
+  std::fill(failed_.begin(), failed_.end(), char{0});
   std::fill(failed_at_.begin(), failed_at_.end(), 0);  // steps are counted anew
-  if (hasFailed(holder_)) {
-    holder_failed_at_ = 0;
-    std::snprintf(failure_.data(), failure_.size(), "it had failed before the reset");
-  }
+  for (const int member : absent) memberFailed(member, 0, "it had failed before the first step");
 }
 
 void BatonArbiter::endAt(std::uint64_t step) noexcept {

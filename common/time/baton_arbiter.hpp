@@ -121,9 +121,9 @@ class BatonArbiter {
   void archive(StateArchive& state) noexcept;
   /// A handover under way is refused: the run goes back to its first step.
   void prepareRewind() noexcept;
-  /// Back to the state before the first step. Who has failed has failed still; a holder that has is followed by the
-  /// fallback.
-  void rewind() noexcept;
+  /// Back to the state before the first step. Whoever is `absent` has failed there; a holder that has is followed by
+  /// the fallback.
+  void rewind(const std::vector<int>& absent) noexcept;
   /// From now on the run ends at this step. A handover that would take place there or later is refused.
   void endAt(std::uint64_t step) noexcept;
 

@@ -7,12 +7,14 @@
 #include "controller_command.hpp"
 #include "demo_command.hpp"
 #include "figures_command.hpp"
+#include "kills_command.hpp"
 #include "laws_command.hpp"
 #include "metrics_command.hpp"
 #include "model_command.hpp"
 #include "operate_commands.hpp"
 #include "param_command.hpp"
 #include "replay_command.hpp"
+#include "rerun_command.hpp"
 #include "run_commands.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/log.hpp"
@@ -39,6 +41,8 @@ int main(int argc, char** argv) {
     baton::addReplayCommand(app, exit_code);
     baton::addBagCommand(app, exit_code);
     baton::addBranchCommand(app, exit_code);
+    baton::addRerunCommand(app, exit_code);
+    baton::addKillsCommand(app, exit_code);
     baton::addMetricsCommand(app);
     baton::addFiguresCommand(app, exit_code);
     baton::addModelCommand(app, exit_code);

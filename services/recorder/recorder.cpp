@@ -111,6 +111,7 @@ void Recorder::requireServices() {
   require(dds::topics::kSwapPlan, {kPlantName});
   require(dds::topics::kSwapOutcome, {kPlantName});
   require(dds::topics::kSwapReport, {kPlantName});
+  require(dds::topics::kDecision, {kPlantName});
   require(dds::topics::kReference, {kTrajectoryName});
   if (scenario.hasEnvironment()) require(dds::topics::kContact, {kEnvironmentName});
   require(dds::topics::kJointCommand, controllers);

@@ -80,15 +80,15 @@ ExitCode Supervisor::run() {
 void Supervisor::judge(const msg::SwapOutcome& swap) {
   const Scenario& scenario = scenario_;
   const std::string outgoing = swap.outgoing().c_str();
-  if (swap.done() && swap.plan_id() == 0 && !scenario.wantsFaultOf(outgoing)) {
+  if (swap.done() && swap.plan_id() == 0 && !scenario.wantsFaultOf(outgoing) && !scenario.plansFailureOf(outgoing)) {
     fail(ExitCode::kFailed, outgoing + " lost the baton: " + swap.reason().c_str());
   }
   for (const PlannedSwap& planned : scenario.swaps) {
     const bool has_come = swap.at_step() < sim_.step();  // else the run ended before
     if (swap.request_id() != 0 || planned.at_step != swap.at_step() || planned.to != swap.incoming().c_str()) continue;
-    if (!swap.done() && !planned.is_to_be_refused && has_come) {
+    if (!swap.done() && planned.expect == SwapExpectation::kDone && has_come) {
       fail(ExitCode::kFailed, "a handover that the scenario plans was refused");
-    } else if (swap.done() && planned.is_to_be_refused) {
+    } else if (swap.done() && planned.expect == SwapExpectation::kRefused) {
       fail(ExitCode::kFailed, "a handover took place that the scenario expects to be refused");
     }
   }

@@ -303,6 +303,7 @@ inline void fill(msg::Decision& m) {
   m.hard(true);
   m.blend_steps(kId);
   m.commanded(true);
+  m.restarted(true);
   m.values().resize(msg::MAX_PARAMETERS);
   for (msg::ParameterValue& value : m.values()) fill(value);
   m.reason(std::string(200, 'r'));
