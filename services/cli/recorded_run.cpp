@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 
 #include "base/error.hpp"
 #include "dds/codec.hpp"
@@ -110,13 +111,45 @@ bool cameToNothing(const std::vector<msg::Decision>& decisions, std::size_t inde
                      });
 }
 
+/// Whether a controller held the baton before that log time.
+bool heldBefore(const mcap::Reader& reader, const std::string& name, std::uint64_t log_time_ns) {
+  bool has_held = false;
+  msg::PlantState state;
+  reader.forEachMessage({.topics = {dds::topics::kPlantState.name}}, [&](const mcap::MessageView& view) {
+    has_held = has_held || (view.log_time_ns < log_time_ns && dds::decode(view.data, state) && state.holder() == name);
+  });
+  return has_held;
+}
+
+/// The scenario with the controllers that were started while the run went on, from its first step: as long as they
+/// stand by, nobody feels them.
+std::string withLaunches(const mcap::Reader& reader, std::string text, const fs::path& file) {
+  std::map<std::uint64_t, msg::LaunchRequest> requests;
+  forEach(reader, 0, dds::topics::kLaunchRequest,
+          [&](const msg::LaunchRequest& request) { requests[request.request_id()] = request; });
+  msg::LaunchReply reply;
+  reader.forEachMessage({.topics = {dds::topics::kLaunchReply.name}}, [&](const mcap::MessageView& view) {
+    if (!dds::decode(view.data, reply) || !reply.accepted() || !requests.contains(reply.request_id())) return;
+    const msg::LaunchRequest& request = requests.at(reply.request_id());
+    const std::string name = request.name().c_str();
+    if (request.action() != msg::LAUNCH_START) return;
+    const bool is_changed = request.law().size() > 0 || request.parameters().size() > 0;
+    if (is_changed && heldBefore(reader, name, view.log_time_ns)) {
+      throw UsageError(file.string() + ": " + name +
+                       " was given another law after it had held the baton, and a scenario has one for each name");
+    }
+    text = withController(text, name, request.law().c_str(), request.parameters().c_str());
+  });
+  return text;
+}
+
 }  // namespace
 
 RecordedRun readRecordedRun(const fs::path& file) {
   const mcap::Reader reader(file);
   const Take take = lastTake(reader);
   RecordedRun run{.file = file,
-                  .scenario_text = needed(reader, "scenario.yaml", file),
+                  .scenario_text = withLaunches(reader, needed(reader, "scenario.yaml", file), file),
                   .robot_text = needed(reader, "robot.yaml", file),
                   .checkpoint = attachmentText(reader, "checkpoint.mcap"),
                   .scenario = {},

@@ -17,6 +17,7 @@ namespace baton {
 namespace {
 
 constexpr std::size_t kQueueBytes = std::size_t{256} << 20;
+constexpr std::size_t kChunkBytes = std::size_t{256} << 10;  // of larger ones the file gains 1 %, the process 2 MB
 constexpr auto kIdle = std::chrono::milliseconds(10);        // how long a sample may wait before it is written
 constexpr auto kFlush = std::chrono::seconds(1);             // what a killed recorder may take along
 constexpr auto kManifestPatience = std::chrono::seconds(5);  // for what is still on its way when the run has ended
@@ -24,6 +25,7 @@ constexpr auto kManifestPatience = std::chrono::seconds(5);  // for what is stil
 mcap::WriterOptions fileOptions(const RecordingConfig& config) {
   mcap::WriterOptions options;
   options.library = "baton " BATON_VERSION;
+  options.chunk_bytes = kChunkBytes;
   options.compression = config.compression == "none"  ? mcap::Compression::kNone
                         : config.compression == "lz4" ? mcap::Compression::kLz4
                                                       : mcap::Compression::kZstd;

@@ -48,6 +48,8 @@ TEST(Launch, ANewControllerJoinsTakesTheBatonAndLeaves) {
 
   const nlohmann::json result = bench.batonJson({"down", "--json"});
   EXPECT_TRUE(result.at("recording").at("complete")) << "who was stopped in order vouches for what it sent: " << result;
+  const Finished again = bench.baton({"rerun", run.recording});
+  EXPECT_EQ(again.exit_code, 0) << again.out << again.err;
 }
 
 TEST(Launch, AnotherLawOrAnotherProgramReplacesOneThatStandsBy) {
