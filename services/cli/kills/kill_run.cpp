@@ -81,7 +81,9 @@ class Killer {
     const std::lock_guard lock(mutex_);
     if (!kill_ || state.step() < kill_->step) return;
     if (service_.empty()) doTheDeed(state);
-    if (state.step() >= step_ + kStopped_steps) goOn();
+    // The plant goes on without a recorder for as long as its credit lasts, and misses it only then.
+    const bool is_missed_late = kill_->of.victim == Victim::kRecorder;
+    if (state.step() >= step_ + kStopped_steps && !is_missed_late) goOn();
     if (state.step() == kill_->step + kFence_steps) ask(msg::SIM_RESUME, 0);
   }
 
