@@ -26,7 +26,17 @@ std::string fallbackOf(const std::string& victim, const Scenario& scenario) {
   return "";
 }
 
+/// The plant may have been some steps ahead of the state that named the victim.
+bool hadHandedOver(const KilledRun& run, const PlantRecord& record) {
+  for (std::uint64_t step = run.step + 1; step <= run.step + kFence_steps && step < record.holders.size(); ++step) {
+    if (record.lost_at && step > *record.lost_at) return false;
+    if (record.holders[step] != run.service) return true;
+  }
+  return false;
+}
+
 std::string lostTheBaton(const KilledRun& run, const PlantRecord& record, const Scenario& scenario) {
+  if (hadHandedOver(run, record)) return "";
   if (!record.lost_at) return run.service + " was not taken for failed";
   const std::uint64_t at = *record.lost_at;
   if (at + 1 >= record.holders.size()) return "the run ends with the failure";
@@ -86,7 +96,10 @@ std::string objectionTo(const Kill& kill, const KilledRun& run, const PlantRecor
 
   if (kill.of.way == Way::kRestarted) return first({expectState("finished"), expectNamed(), expectSame()});
   switch (kill.of.victim) {
-    case Victim::kHolder: return first({expectState("finished"), expectNamed(), lostTheBaton(run, record, scenario)});
+    case Victim::kHolder: {
+      const bool is_noticed = kill.of.way == Way::kKilled || !hadHandedOver(run, record);
+      return first({expectState("finished"), is_noticed ? expectNamed() : "", lostTheBaton(run, record, scenario)});
+    }
     case Victim::kStandby: {
       // Nobody waits for one that stands by, but for the handover to it.
       const bool is_awaited = run.service == scenario.swaps.front().to;

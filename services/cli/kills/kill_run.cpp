@@ -81,7 +81,9 @@ class Killer {
     const std::lock_guard lock(mutex_);
     if (!kill_ || state.step() < kill_->step) return;
     if (service_.empty()) doTheDeed(state);
-    if (state.step() >= step_ + kStopped_steps) goOn();
+    // The plant goes on without a recorder for as long as its credit lasts, and misses it only then.
+    const bool is_missed_late = kill_->of.victim == Victim::kRecorder;
+    if (state.step() >= step_ + kStopped_steps && !is_missed_late) goOn();
     if (state.step() == kill_->step + kFence_steps) ask(msg::SIM_RESUME, 0);
   }
 
@@ -122,11 +124,10 @@ class Killer {
 KilledRun killRun(const Scenario& scenario, const std::optional<Kill>& kill, const std::filesystem::path& folder,
                   RunRequest request) {
   std::vector<ScenarioSetting> settings{{"robot", "./robot.yaml"}};
-  if (kill && kill->of.way == Way::kRestarted) {
-    // A process takes longer to start than the others wait for a silent one.
-    request.restarts = 1;
-    settings.emplace_back("late.after_s", "60");
-  }
+  // Where nobody is stopped, nobody is to be taken for silent: a busy machine may hold up a process, and starting one
+  // takes time.
+  if (!kill || kill->of.way != Way::kStopped) settings.emplace_back("late.after_s", "60");
+  if (kill && kill->of.way == Way::kRestarted) request.restarts = 1;
   if (kill && kill->of == KillCase{Victim::kRecorder, Way::kKilled}) {
     // What is in its file is up to a second old: with two seconds to the step there is something.
     const double until_s = static_cast<double>(kill->step) * scenario.stepSeconds();
