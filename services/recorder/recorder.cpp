@@ -221,7 +221,7 @@ void Recorder::writeBatch(const SampleQueue::Batch& batch) {
       msg::ServiceStatus status;
       if (!dds::decode(payload, status)) continue;
       if (status.state() == msg::SERVICE_FAILED) ledger_.giveUpOn(status.name().c_str());
-      if (status.state() == msg::SERVICE_READY) ledger_.expect(status.name().c_str());
+      if (status.state() == msg::SERVICE_READY && status.role() == "controller") ledger_.expect(status.name().c_str());
     }
   }
 }
