@@ -16,6 +16,7 @@
 #include "runtime/command_line.hpp"
 #include "runtime/log.hpp"
 #include "runtime/run.hpp"
+#include "shadow_command.hpp"
 
 int main(int argc, char** argv) {
   return baton::runGuarded("baton", [&] {
@@ -38,6 +39,7 @@ int main(int argc, char** argv) {
     baton::addBagCommand(app, exit_code);
     baton::addBranchCommand(app, exit_code);
     baton::addMetricsCommand(app);
+    baton::addShadowCommand(app);
     baton::addFiguresCommand(app, exit_code);
     baton::addModelCommand(app, exit_code);
     baton::addLawsCommand(app);

@@ -20,19 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr Eigen::Index kMaxPoints = 1500;  // of a curve: more than a drawing has pixels
 
-struct Curve {
-  std::string label;
-  const Trace* trace = nullptr;
-  Eigen::RowVectorXd y;
-  std::size_t colour = 0;
-  bool is_desired = false;
-};
-
-struct Panel {
-  std::string y_label;
-  std::vector<Curve> curves;
-};
-
 std::string named(const std::string& run, const std::string& what) { return run.empty() ? what : run + ", " + what; }
 
 /// One panel a label; `add(panel, row, run)` draws the curves of each run into it.
@@ -126,8 +113,8 @@ std::vector<Eigen::Index> drawnSteps(const Eigen::RowVectorXd& y) {
     Eigen::Index low = from;
     Eigen::Index high = from;
     for (Eigen::Index k = from; k < to; ++k) {
-      if (y(k) < y(low)) low = k;
-      if (y(k) > y(high)) high = k;
+      if (std::isnan(y(low)) || y(k) < y(low)) low = k;
+      if (std::isnan(y(high)) || y(k) > y(high)) high = k;
     }
     drawn.push_back(std::min(low, high));
     drawn.push_back(std::max(low, high));
@@ -146,6 +133,12 @@ std::optional<double> firstContact(const Trace& trace) {
 }
 
 constexpr const char* kDesiredColour = "#555555";
+
+/// Where the colours begin again, the curves are dashed: gnuplot's dash types from 3 on.
+std::size_t dashesOf(const Curve& curve) {
+  const std::size_t round = curve.colour / std::size(kCurveColours);
+  return round == 0 ? 1 : 2 + round;
+}
 
 void writeMarks(std::ostream& script, const std::vector<LabelledRun>& runs) {
   int tag = 1;
@@ -225,7 +218,7 @@ std::string commandsFor(const std::string& title, const std::vector<Panel>& all,
       const char* colour = curve.is_desired ? kDesiredColour : kCurveColours[curve.colour % std::size(kCurveColours)];
       commands << fmt::format("{}$data_{}_{} using 1:2 with lines lc rgb '{}' lw {} dt {} title {} noenhanced",
                               c == 0 ? "" : ", ", p, c, colour, curve.is_desired ? "1.2" : "1.6",
-                              curve.is_desired ? "2" : "1", quoted(curve.label));
+                              curve.is_desired ? 2 : dashesOf(curve), quoted(curve.label));
     }
     commands << '\n';
   }
@@ -243,8 +236,12 @@ const std::vector<std::string>& plotKinds() {
 
 void draw(const fs::path& stem, const std::string& title, const std::string& kind,
           const std::vector<LabelledRun>& runs) {
-  const std::vector<Panel> all = panels(kind, runs);
-  drawScript(stem, {860, 90 + 190 * all.size()}, dataOf(all), commandsFor(title, all, runs));
+  draw(stem, title, panels(kind, runs), runs);
+}
+
+void draw(const fs::path& stem, const std::string& title, const std::vector<Panel>& panels,
+          const std::vector<LabelledRun>& runs) {
+  drawScript(stem, {860, 90 + 190 * panels.size()}, dataOf(panels), commandsFor(title, panels, runs));
 }
 
 }  // namespace baton
