@@ -7,23 +7,10 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "html.hpp"
 
 namespace baton {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
-    }
-  }
-  return result;
-}
 
 constexpr const char* kHead = R"(<!doctype html>
 <html lang="en">
@@ -39,6 +26,7 @@ constexpr const char* kHead = R"(<!doctype html>
   dl { display: grid; grid-template-columns: 9rem 1fr; gap: 0.2rem 0.8rem; margin: 0.4rem 0; }
   dt { color: #666; } dd { margin: 0; }
   img { max-width: 100%; height: auto; }
+  .wide { overflow-x: auto; } .wide th { font-size: 0.8rem; } td.pair { text-align: center; padding: 0.15rem 0.4rem; }
   .holds, .agrees { color: #1d7a3c; } .partly { color: #9a6a00; } .wrong, .differs { color: #b3261e; }
   .tag { font-weight: 600; white-space: nowrap; }
   @media (prefers-color-scheme: dark) {
@@ -135,6 +123,7 @@ void writeFigure(std::ofstream& page, const FigureResult& result) {
   page << "<p>" << agreement(result) << "</p>\n";
   if (!result.failure.empty()) page << fmt::format("<pre>{}</pre>\n", escaped(result.failure));
   writeChecks(page, result.checks);
+  for (const std::string& table : result.tables) page << table;
   for (const std::string& drawing : result.drawings) {
     page << fmt::format("<p><a href='{0}.png'><img src='{0}.svg' alt='{1}' loading=lazy></a></p>\n", escaped(drawing),
                         escaped(figure.title));
