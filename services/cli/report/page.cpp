@@ -39,9 +39,9 @@ constexpr const char* kHead = R"(<!doctype html>
 
 constexpr const char* kStudiesHead =
     "<h2 id='studies'>Beyond the report</h2>\n"
-    "<p>Questions of our own. Each starts from recordings of the distributed system, like the figures above; its "
-    "charts "
-    "are computed by running the same scenario again in one process, many times over, with a number varied.</p>\n";
+    "<p>Questions of our own. Each starts from recordings of the distributed system, like the figures above; charts "
+    "are "
+    "computed by running the same scenario again in one process, many times over, with a number varied.</p>\n";
 
 const char* className(ClaimVerdict verdict) {
   switch (verdict) {

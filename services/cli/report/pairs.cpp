@@ -44,7 +44,7 @@ PairHandover handoverOf(const RecordedEfforts& run, std::size_t from, std::size_
                         .at_step = at_step,
                         .change = (after - before).cwiseAbs(),
                         .own = own_outgoing.binaryExpr(own_incoming, kLargerOrNan),
-                        .without_help = (columnOf(incoming, K) - before).cwiseAbs()};
+                        .without_blend = (columnOf(incoming, K) - before).cwiseAbs()};
   const Eigen::VectorXd way = columnOf(trace.p_WE, K + 1) - columnOf(trace.p_WE, K);
   handover.tip_speed = way.norm() / trace.scenario.stepSeconds();
   handover.touches = !columnOf(trace.h_e, K).isZero(0.0);

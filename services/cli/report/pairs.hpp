@@ -23,12 +23,12 @@ inline constexpr double kBumpTolerance = 1e-9;  // N m or N
 struct PairHandover {
   std::size_t from = 0;  // index of a controller
   std::size_t to = 0;
-  std::uint64_t at_step = 0;     // K
-  Eigen::VectorXd change;        // |tau(K) - tau(K-1)|
-  Eigen::VectorXd own;           // the larger of the two laws' own changes around K
-  Eigen::VectorXd without_help;  // |tau_i(K) - tau(K-1)|: what the joints would have felt without the blend
-  double tip_speed = 0.0;        // at K [m/s]
-  bool touches = false;          // at K
+  std::uint64_t at_step = 0;      // K
+  Eigen::VectorXd change;         // |tau(K) - tau(K-1)|
+  Eigen::VectorXd own;            // the larger of the two laws' own changes around K
+  Eigen::VectorXd without_blend;  // |tau_i(K) - tau(K-1)|: what the joints would have felt without the blend
+  double tip_speed = 0.0;         // at K [m/s]
+  bool touches = false;           // at K
   bool has_report = false;
   bool cut_short = false;
   std::uint64_t rate_limit_hits = 0;  // over the blend

@@ -22,7 +22,7 @@ std::string details(const PairHandover& one, const PairTable& table) {
   const std::vector<ControllerConfig>& controllers = table.run->trace.scenario.controllers;
   std::string text = fmt::format("{} to {} at step {}\nchange at K: {}\nthe laws' own: {}\nwithout the blend: {}",
                                  controllers[one.from].name, controllers[one.to].name, one.at_step, joined(one.change),
-                                 joined(one.own), joined(one.without_help));
+                                 joined(one.own), joined(one.without_blend));
   if (one.has_report) {
     text += fmt::format(
         "\nover the blend: {:.0f} % of the rate limit, {} hits; {:.3g} J put in, force moves {:.3g} N\ntip at {:.3g} "
@@ -46,7 +46,7 @@ std::string cell(const PairHandover& one, const PairTable& table) {
       "<td class=pair style='background: rgba({}, {:.2f})' title=\"{}\"><span class={}>{:.2f}{}</span><br><small>{:.2g}"
       "</small>",
       is_good ? "44, 140, 74" : "200, 50, 44", is_good ? 0.06 + 0.34 * ratio : 0.5, escaped(details(one, table)),
-      is_good ? "agrees" : "differs", ratio, one.rate_limit_hits > 0 ? "!" : "", one.without_help.maxCoeff());
+      is_good ? "agrees" : "differs", ratio, one.rate_limit_hits > 0 ? "!" : "", one.without_blend.maxCoeff());
 }
 
 /// The worst of several handovers between the same two.
@@ -102,7 +102,7 @@ std::string toHtml(const PairTable& table) {
       "blends: at most {:.0f} % of the rate limit, {:.3g} J put in, the force moves by {:.3g} N. The tip at K: up to "
       "{:.3g} m/s.</p>\n",
       table.handovers.size(), largest([](const auto& one) { return one.ratio(); }),
-      largest([](const auto& one) { return one.without_help.maxCoeff(); }),
+      largest([](const auto& one) { return one.without_blend.maxCoeff(); }),
       100.0 * largest([](const auto& one) { return one.rate_share; }),
       largest([](const auto& one) { return std::abs(one.blend_energy); }),
       largest([](const auto& one) { return one.force_deviation; }),

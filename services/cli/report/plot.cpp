@@ -145,15 +145,18 @@ void writeMarks(std::ostream& script, const std::vector<LabelledRun>& runs) {
   const auto mark = [&](double time_s, const std::string& text, const char* colour) {
     script << fmt::format("set arrow {} from {},graph 0 to {},graph 1 nohead lc rgb '{}' dt 3\n", tag, time_s, time_s,
                           colour);
-    script << fmt::format(
-        "set label {} {} at {},graph 0.04 rotate left offset -0.4,0 tc rgb '{}' font ',9' noenhanced\n", tag,
-        quoted(text), time_s, colour);
+    if (!text.empty()) {
+      script << fmt::format(
+          "set label {} {} at {},graph 0.04 rotate left offset -0.4,0 tc rgb '{}' font ',9' noenhanced\n", tag,
+          quoted(text), time_s, colour);
+    }
     ++tag;
   };
+  constexpr std::size_t kMostNames = 20;  // more could not be read
   for (const LabelledRun& run : runs) {
     for (const msg::SwapOutcome& swap : run.trace->swaps) {
       mark(static_cast<double>(swap.at_step()) * run.trace->scenario.stepSeconds(),
-           std::string("to ") + swap.incoming().c_str(), "#777777");
+           run.trace->swaps.size() > kMostNames ? "" : std::string("to ") + swap.incoming().c_str(), "#777777");
     }
   }
   std::map<double, std::string> touches;  // runs that touch at the same time share a mark
@@ -207,7 +210,7 @@ std::string dataOf(const std::vector<Panel>& all) {
 std::string commandsFor(const std::string& title, const std::vector<Panel>& all, const std::vector<LabelledRun>& runs) {
   std::ostringstream commands;
   commands << fmt::format("set multiplot layout {},1 title {} noenhanced\n", all.size(), quoted(title));
-  commands << "set grid lc rgb '#dddddd'\nset key outside right top samplen 2\nset lmargin 12\n";
+  commands << "set grid lc rgb '#dddddd'\nset key outside right top vertical maxrows 40 samplen 2\nset lmargin 12\n";
   writeMarks(commands, runs);
   for (std::size_t p = 0; p < all.size(); ++p) {
     commands << fmt::format("set ylabel {}\n", quoted(all[p].y_label)) << yRange(all[p]);
@@ -241,7 +244,10 @@ void draw(const fs::path& stem, const std::string& title, const std::string& kin
 
 void draw(const fs::path& stem, const std::string& title, const std::vector<Panel>& panels,
           const std::vector<LabelledRun>& runs) {
-  drawScript(stem, {860, 90 + 190 * panels.size()}, dataOf(panels), commandsFor(title, panels, runs));
+  std::size_t most = 0;  // curves of a panel, each with a line in its legend
+  for (const Panel& panel : panels) most = std::max(most, panel.curves.size());
+  drawScript(stem, {860, 90 + std::max<std::size_t>(190, 60 + 18 * most) * panels.size()}, dataOf(panels),
+             commandsFor(title, panels, runs));
 }
 
 }  // namespace baton
