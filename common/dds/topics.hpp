@@ -56,6 +56,8 @@ inline constexpr Topic<msg::ParameterStatus>  kParameterStatus {"parameter_statu
 inline constexpr Topic<msg::ParameterRequest> kParameterRequest{"parameter_request", "baton::msg::ParameterRequest", Profile::kRequest};
 inline constexpr Topic<msg::ParameterReply>   kParameterReply  {"parameter_reply",   "baton::msg::ParameterReply",   Profile::kEvent};
 inline constexpr Topic<msg::Decision>         kDecision        {"decision",          "baton::msg::Decision",         Profile::kEvent};
+inline constexpr Topic<msg::LaunchRequest>    kLaunchRequest   {"launch_request",    "baton::msg::LaunchRequest",    Profile::kRequest};
+inline constexpr Topic<msg::LaunchReply>      kLaunchReply     {"launch_reply",      "baton::msg::LaunchReply",      Profile::kEvent};
 inline constexpr Topic<msg::ServiceStatus>    kServiceStatus   {"service_status",    "baton::msg::ServiceStatus",    Profile::kStatus};
 inline constexpr Topic<msg::ServiceManifest>  kServiceManifest {"service_manifest",  "baton::msg::ServiceManifest",  Profile::kEvent};
 inline constexpr Topic<msg::Event>            kEvent           {"event",             "baton::msg::Event",            Profile::kEvent};

@@ -120,10 +120,13 @@ std::string keptRobot(const RunInfo& info) { return info.folder + "/robot.yaml";
 void keepExperiment(const RunInfo& info, const Scenario& scenario) {
   for (const auto& [file, text] :
        {std::pair{keptScenario(info), scenario.text}, std::pair{keptRobot(info), scenario.robot_text}}) {
-    std::ofstream stream(file, std::ios::binary);
+    const std::string draft = file + ".new";  // whoever reads it meanwhile sees the old one whole
+    std::ofstream stream(draft, std::ios::binary);
     stream << text;
     stream.close();
-    if (!stream) throw UnavailableError("cannot write " + file + ": expected space and the right to write there");
+    std::error_code error;
+    if (stream) fs::rename(draft, file, error);
+    if (!stream || error) throw UnavailableError("cannot write " + file + ": expected space and the right to write there");
   }
 }
 

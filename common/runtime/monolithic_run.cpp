@@ -13,6 +13,10 @@ const Scenario& checked(const Scenario& scenario) {
     throw UsageError(scenario.file + ": expected a scenario without swaps, because in one process there is nobody to " +
                      "hand over to, found one to " + scenario.swaps.front().to);
   }
+  if (!scenario.failures.empty()) {
+    throw UsageError(scenario.file + ": expected a scenario without failures, because in one process nobody is lost, " +
+                     "found one of " + scenario.failures.front().controller);
+  }
   if (scenario.mode == SimMode::kRealtime) {
     throw UsageError(scenario.file + ": expected mode lockstep, because in one process nobody can be late, " +
                      "found realtime");

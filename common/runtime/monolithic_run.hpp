@@ -22,8 +22,8 @@ namespace baton {
 
 class MonolithicRun {
  public:
-  /// Throws UsageError for what needs more than one loop: planned handovers, mode realtime. Controllers that stand by
-  /// are left out; they change nothing.
+  /// Throws UsageError for what needs more than one loop: planned handovers and failures, mode realtime. Controllers
+  /// that stand by are left out; they change nothing.
   explicit MonolithicRun(const Scenario& scenario);
   MonolithicRun(const MonolithicRun&) = delete;
   MonolithicRun& operator=(const MonolithicRun&) = delete;

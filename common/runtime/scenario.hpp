@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,10 +28,30 @@ struct ControllerConfig {
   ParameterValues parameters;  // complete and checked
 };
 
+enum class SwapExpectation { kDone, kRefused, kAny };
+
 struct PlannedSwap {
   std::uint64_t at_step = 0;
   std::string to;
-  bool is_to_be_refused = false;  // the scenario shows that it is
+  bool force = false;                               // even if the forecast is above max_effort_step
+  bool hard = false;                                // no help: no blend, and the incoming law starts anew
+  std::optional<std::uint64_t> blend_steps;         // as BatonConfig says when not given; none when hard
+  SwapExpectation expect = SwapExpectation::kDone;  // a run in which it goes otherwise has failed
+};
+
+/// The plant takes a controller for failed, whatever its process does.
+struct PlannedFailure {
+  std::optional<std::uint64_t> at_step;  // that is open then; not given: it has failed before the first step
+  std::string controller;
+  bool commanded = true;                         // its command for that step counts still
+  std::optional<std::uint64_t> returns_at_step;  // stands by again; not given: never
+  bool restarted = false;                        // returns as a new process would, which remembers nothing
+};
+
+/// A request to end the run, made while it ran: from then on no handover for the end or later is made.
+struct PlannedStop {
+  std::uint64_t decided_at_step = 0;
+  std::uint64_t at_step = 0;
 };
 
 inline constexpr double kMaxBlend_s = 10.0;
@@ -76,9 +97,11 @@ struct Scenario {
   Coupling coupling = Coupling::kDerivatives;
   TrajectorySpec trajectory;
   std::vector<ControllerConfig> controllers;
-  std::string active;       // who holds the baton at step 0
-  bool hot_standby = true;  // controllers standing by compute in shadow
-  std::vector<PlannedSwap> swaps;
+  std::string active;                    // who holds the baton at step 0
+  bool hot_standby = true;               // controllers standing by compute in shadow
+  std::vector<PlannedSwap> swaps;        // by step
+  std::vector<PlannedFailure> failures;  // by step; those of one controller follow each other
+  std::vector<PlannedStop> stops;        // by the step they are decided at
   BatonConfig baton;
   RecordingConfig recording;
   std::vector<Fault> faults;          // that strike on purpose
@@ -93,6 +116,7 @@ struct Scenario {
   [[nodiscard]] bool hasEnvironment() const { return !walls.empty(); }
   /// Whether something of this service goes wrong on purpose.
   [[nodiscard]] bool wantsFaultOf(const std::string& service) const;
+  [[nodiscard]] bool plansFailureOf(const std::string& controller_name) const;
   /// The arm at the start of the run.
   [[nodiscard]] ArmConfig armConfig() const;
   /// The controller called that; throws UsageError, with the nearest name, when there is none.

@@ -9,6 +9,8 @@ namespace baton {
 namespace {
 
 constexpr std::size_t kMaxSwaps = 10'000;
+constexpr std::size_t kMaxFailures = 1'000;
+constexpr std::size_t kMaxStops = 1'000;
 const NumberRange kEffortRate{0.0, 1e9, "N m/s or N/s", true};
 
 /// What an arm with joints of 87 N m is allowed to command: 1000 N m/s (Franka Emika, FCI). A joint with a limit of its
@@ -57,35 +59,113 @@ void readBaton(const YamlMap& map, Scenario& scenario) {
   scenario.baton.blend_steps = static_cast<std::uint64_t>(std::llround(blend_s / scenario.stepSeconds()));
 }
 
+void readFailures(const YamlMap& map, Scenario& scenario) {
+  const auto node = map.find("failures");
+  if (!node) return;
+  for (const YamlNode& item : node->list(0, kMaxFailures)) {
+    const YamlMap given = item.map({"at_s", "controller", "commanded", "returns_at_s", "restarted"});
+    PlannedFailure failure{.at_step = {},
+                           .controller = readMember(given["controller"], scenario),
+                           .commanded = given.booleanOr("commanded", true),
+                           .returns_at_step = {},
+                           .restarted = given.booleanOr("restarted", false)};
+    const auto at_s = given.find("at_s"), returns_at_s = given.find("returns_at_s");
+    if (at_s) failure.at_step = readSteps(*at_s, scenario);
+    if (returns_at_s) failure.returns_at_step = readSteps(*returns_at_s, scenario);
+    if (given.has("commanded") && !at_s) given["commanded"].fail("expected at_s beside it, found none");
+    if (given.has("restarted") && !returns_at_s) given["restarted"].fail("expected returns_at_s beside it, found none");
+    if (returns_at_s && *failure.returns_at_step < failure.at_step.value_or(0)) {
+      returns_at_s->refuse("a time not before at_s");
+    }
+    for (const PlannedFailure& other : scenario.failures) {
+      if (other.at_step && (!failure.at_step || *failure.at_step < *other.at_step)) {
+        at_s.value_or(item).refuse("failures in the order of their times, those without one first");
+      }
+      const bool is_over = other.returns_at_step && failure.at_step && *other.returns_at_step <= *failure.at_step;
+      if (other.controller == failure.controller && !is_over) {
+        given["controller"].refuse("a controller that has returned from the failure before");
+      }
+    }
+    scenario.failures.push_back(failure);
+  }
+}
+
+void readStops(const YamlMap& map, Scenario& scenario) {
+  const auto node = map.find("stops");
+  if (!node) return;
+  for (const YamlNode& item : node->list(0, kMaxStops)) {
+    const YamlMap given = item.map({"decided_at_s", "at_s"});
+    const PlannedStop stop{readSteps(given["decided_at_s"], scenario), readSteps(given["at_s"], scenario)};
+    if (stop.at_step <= stop.decided_at_step) given["at_s"].refuse("a time after decided_at_s");
+    if (!scenario.stops.empty() && stop.decided_at_step < scenario.stops.back().decided_at_step) {
+      given["decided_at_s"].refuse("a time not before that of the stop before");
+    }
+    scenario.stops.push_back(stop);
+  }
+}
+
+namespace {
+
+PlannedSwap readSwap(const YamlMap& map, const Scenario& scenario) {
+  PlannedSwap swap{.at_step = readSteps(map["at_s"], scenario),
+                   .to = readMember(map["to"], scenario),
+                   .force = map.booleanOr("force", false),
+                   .hard = map.booleanOr("hard", false),
+                   .blend_steps = {},
+                   .expect = SwapExpectation::kDone};
+  if (const auto expect = map.find("expect")) {
+    swap.expect = expect->oneOf<SwapExpectation>(
+        {{"done", SwapExpectation::kDone}, {"refused", SwapExpectation::kRefused}, {"any", SwapExpectation::kAny}});
+  }
+  if (const auto blend_s = map.find("blend_s")) {
+    if (swap.hard) blend_s->fail("expected none beside hard: true, which has no blend");
+    swap.blend_steps =
+        static_cast<std::uint64_t>(std::llround(blend_s->number({0.0, kMaxBlend_s, "s"}) / scenario.stepSeconds()));
+  }
+  return swap;
+}
+
+}  // namespace
+
 void readSwaps(const YamlMap& map, Scenario& scenario) {
   const auto node = map.find("swaps");
   if (!node) return;
   const BatonConfig& baton = scenario.baton;
-  const std::uint64_t apart = std::max(2 * baton.margin_steps + 3, baton.blend_steps);
   const auto in_words = [&](std::uint64_t step) {
     return "step " + std::to_string(step) + " (" + shownNumber(static_cast<double>(step) * scenario.stepSeconds()) +
            " s)";
   };
   std::string holder = scenario.active;
   for (const YamlNode& item : node->list(0, kMaxSwaps)) {
-    const YamlMap map_of_swap = item.map({"at_s", "to", "expect"});
-    const YamlNode at_s = map_of_swap["at_s"];
-    PlannedSwap swap{readSteps(at_s, scenario), readMember(map_of_swap["to"], scenario)};
-    if (const auto expect = map_of_swap.find("expect")) {
-      swap.is_to_be_refused = expect->oneOf<bool>({{"done", false}, {"refused", true}});
+    const YamlMap given = item.map({"at_s", "to", "force", "hard", "blend_s", "expect"});
+    const YamlNode at_s = given["at_s"];
+    const PlannedSwap swap = readSwap(given, scenario);
+    std::uint64_t earliest = baton.margin_steps + 2;
+    std::string why = ", margin_steps + 2";
+    const bool is_free = swap.expect == SwapExpectation::kAny;  // as an operator is, who may ask for what cannot be
+    if (is_free) {
+      earliest = baton.margin_steps + 1;
+      why = ", margin_steps + 1";
     }
-    if (scenario.swaps.empty()) {
-      const std::uint64_t earliest = baton.margin_steps + 2;
-      if (swap.at_step < earliest) at_s.refuse("a time not before " + in_words(earliest) + ", margin_steps + 2");
-    } else if (const std::uint64_t before = scenario.swaps.back().at_step; swap.at_step < before + apart) {
-      at_s.refuse("a time not before " + in_words(before + apart) +
-                  ": the swap before must be over, which takes its blend and more than 2 margin_steps + 2");
+    if (!scenario.swaps.empty()) {
+      const PlannedSwap& before = scenario.swaps.back();
+      const std::uint64_t blend_steps = before.hard ? 0 : before.blend_steps.value_or(baton.blend_steps);
+      const std::uint64_t apart = is_free ? 0 : std::max(2 * baton.margin_steps + 3, blend_steps);
+      if (before.at_step + apart >= earliest) {
+        earliest = before.at_step + apart;
+        why = is_free ? ", that of the swap before"
+                      : ": the swap before must be over, which takes its blend and more than 2 margin_steps + 2";
+      }
     }
+    if (swap.at_step < earliest) at_s.refuse("a time not before " + in_words(earliest) + why);
     if (scenario.end_step > 0 && swap.at_step >= scenario.end_step) {
       at_s.refuse("a time before the end of the run, " + in_words(scenario.end_step));
     }
-    if (!swap.is_to_be_refused) {
-      if (swap.to == holder) map_of_swap["to"].refuse("a controller that does not hold the baton already");
+    // Who holds the baton behind a failure, or behind what may go either way, nobody knows beforehand.
+    if (is_free || !scenario.failures.empty()) holder.clear();
+    if (swap.expect == SwapExpectation::kDone) {
+      const bool is_known = !holder.empty() && swap.to == holder;
+      if (is_known) given["to"].refuse("a controller that does not hold the baton already");
       holder = swap.to;
     }
     scenario.swaps.push_back(swap);

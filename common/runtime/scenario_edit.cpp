@@ -2,6 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "base/error.hpp"
@@ -55,6 +56,13 @@ void set(YAML::Node node, const std::vector<std::string>& parts, std::size_t at,
   set(node[part], parts, at + 1, value, path);
 }
 
+std::string textOf(const YAML::Node& root) {
+  YAML::Emitter emitter;
+  emitter.SetDoublePrecision(17);
+  emitter << root;
+  return std::string(emitter.c_str()) + "\n";
+}
+
 }  // namespace
 
 ScenarioSetting parseSetting(const std::string& text) {
@@ -76,10 +84,47 @@ std::string editScenario(const std::string& text, const std::vector<ScenarioSett
     }
     set(root, partsOf(path), 0, parsed, path);
   }
-  YAML::Emitter emitter;
-  emitter.SetDoublePrecision(17);
-  emitter << root;
-  return std::string(emitter.c_str()) + "\n";
+  return textOf(root);
+}
+
+std::string keepInScenario(const std::string& text, const std::string& key,
+                           const std::function<bool(std::size_t)>& keeps) {
+  YAML::Node root = YAML::Load(text);
+  if (!root[key].IsDefined()) return text;
+  YAML::Node kept(YAML::NodeType::Sequence);
+  for (std::size_t i = 0; i < root[key].size(); ++i) {
+    if (keeps(i)) kept.push_back(root[key][i]);
+  }
+  root[key] = kept;
+  return textOf(root);
+}
+
+std::string appendToScenario(const std::string& text, const std::string& key, const std::vector<std::string>& entries) {
+  if (entries.empty()) return text;
+  YAML::Node root = YAML::Load(text);
+  for (const std::string& entry : entries) root[key].push_back(YAML::Load(entry));
+  return textOf(root);
+}
+
+std::string withController(const std::string& text, const std::string& name, const std::string& law,
+                           const std::string& parameters) {
+  const YAML::Node controllers = YAML::Load(text)["controllers"];
+  const auto known = std::find_if(controllers.begin(), controllers.end(),
+                                  [&](const YAML::Node& one) { return one["name"].as<std::string>("") == name; });
+  const bool is_new = known == controllers.end();
+  if (is_new && law.empty()) {
+    throw UsageError("no controller is called " + name + ": a new one needs a law, --law L; see `baton laws`");
+  }
+  const std::string entry = "{name: " + name + ", law: " + law + "}";
+  const std::string place = "controllers." + name;
+  std::vector<ScenarioSetting> settings;
+  if (!is_new && !law.empty() && (*known)["law"].as<std::string>("") != law) settings.emplace_back(place, entry);
+  std::istringstream lines(parameters);
+  for (std::string line; std::getline(lines, line);) {
+    const auto& [parameter, value] = parseSetting(line);
+    settings.emplace_back(place + ".parameters." + parameter, value);
+  }
+  return editScenario(is_new ? appendToScenario(text, "controllers", {entry}) : text, settings);
 }
 
 }  // namespace baton

@@ -225,8 +225,8 @@ Scenario readScenario(const std::string& file, const std::string& text,
       YamlNode::parse(file, text).map({"name",         "description", "robot",       "step_s",     "substeps",
                                        "duration_s",   "mode",        "rate",        "late",       "max_missed_steps",
                                        "effort_limit", "start",       "environment", "trajectory", "controllers",
-                                       "active",       "standby",     "swaps",       "baton",      "recording",
-                                       "faults"});
+                                       "active",       "standby",     "swaps",       "failures",   "stops",
+                                       "baton",        "recording",   "faults"});
   Scenario scenario;
   scenario.file = file;
   scenario.text = text;
@@ -255,7 +255,9 @@ Scenario readScenario(const std::string& file, const std::string& text,
     scenario.hot_standby = standby->oneOf<bool>({{"hot", true}, {"cold", false}});
   }
   readBaton(map, scenario);
+  readFailures(map, scenario);
   readSwaps(map, scenario);
+  readStops(map, scenario);
   scenario.recording = readRecording(map, scenario);
   readFaults(map, scenario);
   return scenario;
@@ -270,6 +272,11 @@ ArmConfig Scenario::armConfig() const {
 
 bool Scenario::wantsFaultOf(const std::string& service) const {
   return std::any_of(faults.begin(), faults.end(), [&](const Fault& fault) { return fault.service == service; });
+}
+
+bool Scenario::plansFailureOf(const std::string& controller_name) const {
+  return std::any_of(failures.begin(), failures.end(),
+                     [&](const PlannedFailure& failure) { return failure.controller == controller_name; });
 }
 
 const ControllerConfig& Scenario::controller(const std::string& controller_name) const {

@@ -42,10 +42,12 @@ decltype(auto) at(const YamlNode& node, const Read& read) {
 /// The name of a controller of this scenario.
 [[nodiscard]] std::string readMember(const YamlNode& node, const Scenario& scenario);
 
-/// The baton's settings, and the handovers that are planned: both from the scenario's own map, into `scenario`, which
-/// has everything else already.
+/// The baton's settings, and what is planned for it: all from the scenario's own map, into `scenario`, which has
+/// everything else already.
 void readBaton(const YamlMap& map, Scenario& scenario);
+void readFailures(const YamlMap& map, Scenario& scenario);
 void readSwaps(const YamlMap& map, Scenario& scenario);
+void readStops(const YamlMap& map, Scenario& scenario);
 /// The faults that are wanted, likewise.
 void readFaults(const YamlMap& map, Scenario& scenario);
 

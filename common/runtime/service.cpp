@@ -263,10 +263,18 @@ void Service::stop(ExitCode code) {
 void Service::awaitSignal() {
   signals_.async_wait([this](const boost::system::error_code& error, int) {
     if (error) return;
-    if (!on_signal_) return executor_.stop();
+    if (!on_signal_) return leave();
     on_signal_();
     awaitSignal();
   });
+}
+
+/// In the middle of a run too what was sent is vouched for.
+void Service::leave() {
+  publishManifest();
+  constexpr int kPatience_ms = 1000;
+  manifest_->raw().waitForAcknowledgments(kPatience_ms);
+  executor_.stop();
 }
 
 ExitCode Service::run() {

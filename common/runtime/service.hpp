@@ -105,6 +105,7 @@ class Service {
 
  private:
   void awaitSignal();
+  void leave();
   [[nodiscard]] bool isRival(const dds::Peer& peer) const;
   void giveWayToElders();
   void peerJoined(const dds::Peer& peer);

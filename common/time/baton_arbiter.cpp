@@ -204,6 +204,17 @@ void BatonArbiter::memberFailed(int member, std::uint64_t open_step, const char*
   }
 }
 
+int BatonArbiter::memberJoined(const ArbiterMember& member) {
+  config_.members.push_back(member);
+  failed_.push_back(0);
+  failed_at_.push_back(0);
+  return static_cast<int>(config_.members.size()) - 1;
+}
+
+void BatonArbiter::memberChanged(int member, bool requires_contact) noexcept {
+  config_.members[static_cast<std::size_t>(member)].requires_contact = requires_contact;
+}
+
 void BatonArbiter::memberReturned(int member) noexcept {
   const auto index = static_cast<std::size_t>(member);
   if (member >= 0 && index < failed_.size() && member != holder_) failed_[index] = 0;
@@ -227,7 +238,7 @@ void BatonArbiter::prepareRewind() noexcept {
   if (phase_ != Phase::kIdle) drop(Kind::kRefused, "the run is reset");
 }
 
-void BatonArbiter::rewind() noexcept {
+void BatonArbiter::rewind(const std::vector<int>& absent) noexcept {
   phase_ = Phase::kIdle;
   holder_ = first_holder_;
   contact_ = false;
@@ -235,11 +246,9 @@ void BatonArbiter::rewind() noexcept {
   handover_at_.reset();
   handed_over_by_ = kBrake;
   holder_failed_at_.reset();
+  std::fill(failed_.begin(), failed_.end(), char{0});
   std::fill(failed_at_.begin(), failed_at_.end(), 0);  // steps are counted anew
-  if (hasFailed(holder_)) {
-    holder_failed_at_ = 0;
-    std::snprintf(failure_.data(), failure_.size(), "it had failed before the reset");
-  }
+  for (const int member : absent) memberFailed(member, 0, "it had failed before the first step");
 }
 
 void BatonArbiter::endAt(std::uint64_t step) noexcept {

@@ -8,7 +8,7 @@
 /// realtime it does without and the handover is refused.
 ///
 /// Controllers are numbered as in the scenario; kBrake stands for the plant's own brake. Nothing here allocates after
-/// construction.
+/// construction, unless somebody joins.
 #pragma once
 
 #include <array>
@@ -77,6 +77,10 @@ class BatonArbiter {
   /// The member is gone or misbehaves at `open_step`. If it holds the baton, the next step belongs to the fallback.
   void memberFailed(int member, std::uint64_t open_step, const char* reason) noexcept;
 
+  /// Somebody new stands by. Returns its number. Allocates.
+  int memberJoined(const ArbiterMember& member);
+  /// A member runs another law now.
+  void memberChanged(int member, bool requires_contact) noexcept;
   /// A member that had failed is there again, to stand by.
   void memberReturned(int member) noexcept;
   /// The run ends: a handover under way is refused.
@@ -117,9 +121,9 @@ class BatonArbiter {
   void archive(StateArchive& state) noexcept;
   /// A handover under way is refused: the run goes back to its first step.
   void prepareRewind() noexcept;
-  /// Back to the state before the first step. Who has failed has failed still; a holder that has is followed by the
-  /// fallback.
-  void rewind() noexcept;
+  /// Back to the state before the first step. Whoever is `absent` has failed there; a holder that has is followed by
+  /// the fallback.
+  void rewind(const std::vector<int>& absent) noexcept;
   /// From now on the run ends at this step. A handover that would take place there or later is refused.
   void endAt(std::uint64_t step) noexcept;
 

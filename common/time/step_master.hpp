@@ -70,6 +70,7 @@ class StepMaster {
   [[nodiscard]] SimPhase phase() const noexcept { return phase_; }
   [[nodiscard]] bool isOver() const noexcept { return phase_ == SimPhase::kFinished || phase_ == SimPhase::kAborted; }
   [[nodiscard]] std::uint64_t step() const noexcept { return step_; }
+  [[nodiscard]] std::uint64_t firstStep() const noexcept { return config_.first_step; }
   [[nodiscard]] std::uint64_t endStep() const noexcept { return config_.end_step; }
   [[nodiscard]] bool hasCommand() const noexcept { return has_command_; }
   [[nodiscard]] bool hasContact() const noexcept { return has_contact_; }

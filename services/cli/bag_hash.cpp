@@ -56,6 +56,9 @@ HashedRun hashRun(const std::filesystem::path& file) {
   forEach(reader, begin_ns, dds::topics::kContact, [&](const msg::Contact& contact, std::uint64_t hash) {
     if (const auto step = run.steps.find(contact.step()); step != run.steps.end()) step->second.hashes.contact = hash;
   });
+  forEach(reader, begin_ns, dds::topics::kReference, [&](const msg::Reference& reference, std::uint64_t hash) {
+    if (const auto step = run.steps.find(reference.step()); step != run.steps.end()) step->second.reference = hash;
+  });
   forEach(reader, begin_ns, dds::topics::kJointCommand, [&](const msg::JointCommand& command, std::uint64_t hash) {
     const auto step = run.steps.find(command.step());
     if (step == run.steps.end()) return;
@@ -73,11 +76,13 @@ Comparison compare(const HashedRun& a, const HashedRun& b) {
     if (found == b.steps.end()) continue;
     ++comparison.steps;
     const dds::StepHashes &x = one.hashes, &y = found->second.hashes;
-    const bool commands_differ = x.outgoing_command != y.outgoing_command || x.command != y.command;
-    const char* topic = x.state != y.state       ? dds::topics::kPlantState.name
-                        : x.contact != y.contact ? dds::topics::kContact.name
-                        : commands_differ        ? dds::topics::kJointCommand.name
-                                                 : nullptr;
+    const auto differ = [](std::uint64_t p, std::uint64_t q) { return p != 0 && q != 0 && p != q; };
+    const bool commands_differ = differ(x.outgoing_command, y.outgoing_command) || differ(x.command, y.command);
+    const char* topic = x.state != y.state                               ? dds::topics::kPlantState.name
+                        : differ(x.contact, y.contact)                   ? dds::topics::kContact.name
+                        : differ(one.reference, found->second.reference) ? dds::topics::kReference.name
+                        : commands_differ                                ? dds::topics::kJointCommand.name
+                                                                         : nullptr;
     if (topic == nullptr) continue;
     comparison.parting = Parting{number, topic};
     break;

@@ -14,7 +14,8 @@ namespace baton {
 /// A recorded loop, as hashes; of a run that was reset, its last take.
 struct HashedRun {
   struct Step {
-    dds::StepHashes hashes;   // of what was recorded for the step; 0 for what was not
+    dds::StepHashes hashes;  // of what was recorded for the step; 0 for what was not
+    std::uint64_t reference = 0;
     std::uint64_t chain = 0;  // PlantState.chain_hash: of the steps before
     std::string holder;
   };
@@ -30,14 +31,15 @@ struct HashedRun {
 /// Throws UsageError when the file has no states, and what reading a recording throws.
 [[nodiscard]] HashedRun hashRun(const std::filesystem::path& file);
 
-/// Where two runs part.
+/// Where two runs part: the first payload that differs. One that only one of the two has is no difference by itself: a
+/// process may have died before it sent it, and the next state says whether the plant used it.
 struct Parting {
   std::uint64_t step = 0;
-  std::string topic;  // "plant_state", "contact" or "joint_command"
+  std::string topic;  // "plant_state", "contact", "reference" or "joint_command"
 };
 struct Comparison {
-  std::uint64_t steps = 0;         // that both have
-  std::optional<Parting> parting;  // the first that differs
+  std::uint64_t steps = 0;  // that both have
+  std::optional<Parting> parting;
 };
 [[nodiscard]] Comparison compare(const HashedRun& a, const HashedRun& b);
 

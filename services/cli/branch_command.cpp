@@ -3,12 +3,13 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
 
+#include "dds/codec.hpp"
 #include "mcap/reader.hpp"
+#include "recorded_run.hpp"
 #include "report/recording.hpp"
 #include "run_commands.hpp"
 #include "run_session.hpp"
@@ -34,21 +35,11 @@ struct BranchRequest {
   bool json = false;
 };
 
-/// The experiment that a recording holds.
-struct Original {
-  fs::path file;
-  std::string scenario_text;
-  std::string robot_text;
-  Scenario scenario;
+/// Where a branch leaves its run.
+struct Fork {
+  RecordedRun run;
   msg::PlantState state;  // at the step of the branch
-  std::uint64_t last_step = 0;
-  std::uint64_t begin_ns = 0;  // log time of the last take's begin
 };
-
-std::string needed(const mcap::Reader& reader, const std::string& name, const fs::path& file) {
-  if (auto text = attachmentText(reader, name)) return *text;
-  throw UsageError(file.string() + ": expected the recording of a run, with its " + name + ", found none");
-}
 
 std::uint64_t stepOf(const BranchRequest& request, const Scenario& scenario) {
   if (request.at_step) return *request.at_step;
@@ -56,66 +47,30 @@ std::uint64_t stepOf(const BranchRequest& request, const Scenario& scenario) {
   return static_cast<std::uint64_t>(std::llround(*request.at_s / scenario.stepSeconds()));
 }
 
-Original read(const BranchRequest& request) {
-  const mcap::Reader reader(request.recording);
-  Original original{.file = request.recording,
-                    .scenario_text = needed(reader, "scenario.yaml", request.recording),
-                    .robot_text = needed(reader, "robot.yaml", request.recording),
-                    .scenario = {},
-                    .state = {},
-                    .last_step = 0,
-                    .begin_ns = lastTakeBegin(reader)};
-  original.scenario = parseScenario(request.recording + "#scenario.yaml", original.scenario_text,
-                                    request.recording + "#robot.yaml", original.robot_text);
-  const std::uint64_t step = stepOf(request, original.scenario);
+Fork read(const BranchRequest& request) {
+  Fork fork{.run = readRecordedRun(request.recording), .state = {}};
+  const std::uint64_t step = stepOf(request, fork.run.scenario);
   bool found = false;
+  const mcap::Reader reader(request.recording);
   reader.forEachMessage({.topics = {dds::topics::kPlantState.name},
-                         .start_time_ns = original.begin_ns,
+                         .start_time_ns = fork.run.begin_ns,
                          .order = mcap::MessageFilter::Order::kFile},
                         [&](const mcap::MessageView& view) {
                           msg::PlantState state;
-                          if (!dds::decode(view.data, state)) return;
-                          original.last_step = std::max(original.last_step, state.step());
-                          if (state.step() != step) return;
-                          original.state = state;
+                          if (!dds::decode(view.data, state) || state.step() != step) return;
+                          fork.state = state;
                           found = true;
                         });
-  if (!found || step >= original.last_step) {
-    throw UsageError(request.recording + ": expected a step before its last, " + std::to_string(original.last_step) +
+  if (!found || step >= fork.run.last_step) {
+    throw UsageError(request.recording + ": expected a step before its last, " + std::to_string(fork.run.last_step) +
                      ", found " + std::to_string(step));
   }
-  return original;
-}
-
-std::string seconds(std::uint64_t step, const Scenario& scenario) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.9f", static_cast<double>(step) * scenario.stepSeconds());
-  return text.data();
-}
-
-/// The planned handovers, but for those that `keep` refuses, as YAML.
-template <class Keep>
-std::string swapsText(const Scenario& scenario, const Keep& keep, const std::string& more = "") {
-  std::string text = more;
-  for (const PlannedSwap& swap : scenario.swaps) {
-    if (keep(swap.at_step))
-      text += (text.empty() ? "" : ", ") + ("{at_s: " + seconds(swap.at_step, scenario)) + ", to: " + swap.to +
-              (swap.is_to_be_refused ? ", expect: refused}" : "}");
-  }
-  return "[" + text + "]";
-}
-
-void writeText(const fs::path& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream)
-    throw UnavailableError("cannot write " + file.string() + ": expected space and the right to write there");
+  return fork;
 }
 
 /// Runs what is in `folder` from `set` on, and throws when it does not end well.
 nlohmann::ordered_json runFrom(const CheckpointSet& set, const fs::path& folder, const std::string& scenario_text,
-                               const Original& original, RunRequest request, ExitCode& exit_code) {
+                               const RecordedRun& original, RunRequest request, ExitCode& exit_code) {
   writeText(folder / "robot.yaml", original.robot_text);
   writeText(folder / "scenario.yaml", editScenario(scenario_text, {{"robot", "./robot.yaml"}}));
   if (!set.states.empty()) {
@@ -131,8 +86,9 @@ nlohmann::ordered_json runFrom(const CheckpointSet& set, const fs::path& folder,
 }
 
 /// The checkpoint of exactly that step. When the recording has only an earlier one, the run is repeated from there.
-CheckpointSet checkpointAt(std::uint64_t step, const Original& original, const fs::path& folder,
-                           const RunRequest& request) {
+CheckpointSet checkpointAt(const Fork& fork, const fs::path& folder, const RunRequest& request) {
+  const RecordedRun& original = fork.run;
+  const std::uint64_t step = fork.state.step();
   std::vector<std::string> services = controllerNames(original.scenario);
   services.emplace_back(kPlantName);
   const mcap::Reader reader(original.file);
@@ -148,20 +104,16 @@ CheckpointSet checkpointAt(std::uint64_t step, const Original& original, const f
   lead_in.overwrite = true;
   ExitCode code = ExitCode::kOk;
   const nlohmann::ordered_json result =
-      runFrom(newest, folder,
-              editScenario(original.scenario_text,
-                           {{"duration_s", seconds(step, original.scenario)},
-                            {"swaps", swapsText(original.scenario, [&](std::uint64_t at) { return at < step; })}}),
-              original, lead_in, code);
-  if (code != ExitCode::kOk) {
+      runFrom(newest, folder, repeatingScenario(original, step), original, lead_in, code);
+  const bool is_same = result.at("chain_hash") == std::to_string(fork.state.chain_hash());
+  // A controller that was lost then is lost again, which is no success of a run.
+  if (result.at("state") != "finished") {
     throw Error(code, "the steps before the branch could not be repeated: " + result.at("reason").get<std::string>());
   }
-  if (result.at("chain_hash") != std::to_string(original.state.chain_hash())) {
-    throw Error(ExitCode::kFailed,
-                "steps " + std::to_string(newest.step) + " to " + std::to_string(step) +
-                    " do not repeat: what happened between them (an operator's request, a failover, another build) is "
-                    "not in the scenario; choose step " +
-                    std::to_string(newest.step) + " or one nearer behind a checkpoint");
+  if (!is_same) {
+    throw Error(ExitCode::kFailed, "steps " + std::to_string(newest.step) + " to " + std::to_string(step) +
+                                       " do not repeat: " + original.file.string() +
+                                       " was recorded by another build, or is damaged; `baton rerun` tells where");
   }
   const CheckpointSet made = newestCheckpoint(lead_in.out, 0, step, services);
   if (made.step != step) {
@@ -170,9 +122,9 @@ CheckpointSet checkpointAt(std::uint64_t step, const Original& original, const f
   return made;
 }
 
-void expectNoPlan(std::uint64_t step, const Scenario& scenario) {
-  const std::uint64_t margin = scenario.baton.margin_steps;
-  for (const PlannedSwap& swap : scenario.swaps) {
+void expectNoPlan(std::uint64_t step, const RecordedRun& run) {
+  const std::uint64_t margin = run.scenario.baton.margin_steps;
+  for (const PlannedSwap& swap : swapsOf(run)) {
     if (step >= swap.at_step - margin - 1 && step < swap.at_step + 1 && step + margin + 1 != swap.at_step) {
       throw UsageError("step " + std::to_string(step) + " lies in the handover to " + swap.to + " at step " +
                        std::to_string(swap.at_step) + ": choose one up to " +
@@ -182,20 +134,21 @@ void expectNoPlan(std::uint64_t step, const Scenario& scenario) {
 }
 
 void branch(const BranchRequest& request, ExitCode& exit_code) {
-  const Original original = read(request);
-  const std::uint64_t step = original.state.step();
+  const Fork fork = read(request);
+  const RecordedRun& original = fork.run;
+  const std::uint64_t step = fork.state.step();
   const Scenario& scenario = original.scenario;
-  expectNoPlan(step, scenario);
+  expectNoPlan(step, original);
   const std::uint64_t earliest = step + scenario.baton.margin_steps + 1;
   std::vector<ScenarioSetting> settings;
-  std::string wanted;
+  std::vector<PlannedSwap> swaps = scenario.swaps;
+  std::erase_if(swaps, [&](const PlannedSwap& swap) { return swap.at_step < earliest; });
   if (!request.swap.empty()) {
     (void)scenario.controller(request.swap);
-    wanted = "{at_s: " + seconds(earliest, scenario) + ", to: " + request.swap + "}";
+    swaps.insert(swaps.begin(), PlannedSwap{.at_step = earliest, .to = request.swap, .blend_steps = {}});
   }
-  settings.emplace_back("swaps", swapsText(
-                                     scenario, [&](std::uint64_t at) { return at >= earliest; }, wanted));
-  if (original.state.holder().size() > 0) settings.emplace_back("active", original.state.holder().c_str());
+  settings.emplace_back("swaps", swapsText(swaps, scenario));
+  if (fork.state.holder().size() > 0) settings.emplace_back("active", fork.state.holder().c_str());
   for (const std::string& text : request.set) {
     settings.push_back(parseSetting(text));
     const std::string& path = settings.back().first;
@@ -207,12 +160,12 @@ void branch(const BranchRequest& request, ExitCode& exit_code) {
   const std::string text = editScenario(original.scenario_text, settings);
   const Scenario changed = parseScenario("the branch's scenario", text, "its robot", original.robot_text);
   if (changed.end_step != 0 && changed.end_step <= step) {
-    throw UsageError("--set duration_s: expected an end after the step of the branch, " + seconds(step, scenario) +
-                     " s, found " + seconds(changed.end_step, scenario) + " s");
+    throw UsageError("--set duration_s: expected an end after the step of the branch, " + secondsText(step, scenario) +
+                     " s, found " + secondsText(changed.end_step, scenario) + " s");
   }
   const fs::path folder = stateFolder() / "branches" / newRunId();
   fs::create_directories(folder);
-  const CheckpointSet set = checkpointAt(step, original, folder, request.run);
+  const CheckpointSet set = checkpointAt(fork, folder, request.run);
 
   RunRequest run = request.run;
   if (run.out.empty()) {

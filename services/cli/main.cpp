@@ -4,14 +4,17 @@
 #include "bag_command.hpp"
 #include "baton_commands.hpp"
 #include "branch_command.hpp"
+#include "controller_command.hpp"
 #include "demo_command.hpp"
 #include "figures_command.hpp"
+#include "kills_command.hpp"
 #include "laws_command.hpp"
 #include "metrics_command.hpp"
 #include "model_command.hpp"
 #include "operate_commands.hpp"
 #include "param_command.hpp"
 #include "replay_command.hpp"
+#include "rerun_command.hpp"
 #include "run_commands.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/log.hpp"
@@ -33,11 +36,14 @@ int main(int argc, char** argv) {
     baton::addDemoCommand(app, exit_code);
     baton::addRunCommands(app, exit_code);
     baton::addBatonCommands(app, exit_code);
+    addControllerCommand(app, exit_code);
     addOperateCommands(app, exit_code);
     baton::addParamCommand(app);
     baton::addReplayCommand(app, exit_code);
     baton::addBagCommand(app, exit_code);
     baton::addBranchCommand(app, exit_code);
+    baton::addRerunCommand(app, exit_code);
+    baton::addKillsCommand(app, exit_code);
     baton::addMetricsCommand(app);
     baton::addShadowCommand(app);
     baton::addFiguresCommand(app, exit_code);

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "cell_client.hpp"
+#include "progress_line.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/log.hpp"
@@ -19,23 +20,6 @@
 
 namespace baton {
 namespace {
-
-/// One line on the terminal that is written over; nothing when standard error is a file.
-class ProgressLine {
- public:
-  void show(const std::string& text) {
-    if (!is_terminal_ || text == last_) return;
-    std::fprintf(stderr, "\r\033[K%s", text.c_str());
-    last_ = text;
-  }
-  ~ProgressLine() {
-    if (!last_.empty()) std::fprintf(stderr, "\r\033[K");
-  }
-
- private:
-  bool is_terminal_ = isatty(STDERR_FILENO) != 0;
-  std::string last_;
-};
 
 std::string progressText(const std::optional<msg::SimStatus>& status) {
   if (!status) return "starting";

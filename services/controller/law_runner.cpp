@@ -39,6 +39,13 @@ LawRunner::LawRunner(Service& service)
   owed_.reserve(kMaxOwed);
   law_state_.resize(msg::MAX_CHECKPOINT);
   law_->reset();
+  for (const PlannedFailure& failure : service.scenario().failures) {
+    const bool is_restart = failure.controller == config_.name && failure.restarted;
+    // One from before a branch is behind the state that the branch starts from.
+    if (is_restart && *failure.returns_at_step >= checkpoint_out_.firstStep()) {
+      restarts_.push_back(*failure.returns_at_step);
+    }
+  }
   checkpoint_out_.restore(*this);
   service.input(dds::topics::kPlantState, {kPlantName},
                 [this](const msg::PlantState& message, const dds::RawSample& sample) { onState(message, sample); });
@@ -102,6 +109,7 @@ void LawRunner::compute(std::uint64_t step) {
   inputs_.done(step);
   service_.at(step);
   if (checkpoints_[slot]) checkpoint_out_.save(step, *this);
+  restartAsPlanned(step);
   if (!holds && !last_command && !service_.scenario().hot_standby) {
     active_ = false;
     history_[slot].resize(0);
@@ -118,6 +126,11 @@ void LawRunner::compute(std::uint64_t step) {
   service_.stepDone(step);
 }
 
+/// This process stands for one that had died and was started again: that one would remember nothing.
+void LawRunner::restartAsPlanned(std::uint64_t step) {
+  for (; next_restart_ < restarts_.size() && restarts_[next_restart_] <= step; ++next_restart_) law_->reset();
+}
+
 bool LawRunner::isQuiet(std::uint64_t step) const {
   // The reference comes a step early; everything else of the step is what it was computed from.
   return inputs_.lastDone() && *inputs_.lastDone() >= step && inputs_.has(kReference, step + 1);
@@ -127,6 +140,7 @@ void LawRunner::forget() {
   law_->reset();
   inputs_ = StepInputs(info_.uses_force ? 3 : 2);
   active_ = failing_ = false;
+  next_restart_ = 0;
   owed_.clear();
   last_command_step_.reset();
   fresh_step_.reset();

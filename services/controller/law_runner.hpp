@@ -35,6 +35,7 @@ class LawRunner {
   void onPlan(const msg::SwapPlan& plan);
   void arrived(Input input, std::uint64_t step);
   void compute(std::uint64_t step);
+  void restartAsPlanned(std::uint64_t step);
   enum class Start { kContinues, kTakesOver, kForgets };  // of a law at a step: see Law
   void evaluate(std::uint64_t step, Start start);
   void publish(std::uint64_t step, bool commands);
@@ -71,6 +72,8 @@ class LawRunner {
   std::optional<std::uint64_t> last_command_step_;  // as outgoing controller: command this step once more
   std::optional<std::uint64_t> fresh_step_;  // as incoming controller of a hard handover: forget everything there
   Window<JointVector> history_;              // efforts of the latest steps
+  std::vector<std::uint64_t> restarts_;      // steps at which the scenario has it return as a new process
+  std::size_t next_restart_ = 0;
 
   LoopOutput<msg::JointCommand> command_out_;
   LoopOutput<msg::JointCommand> shadow_out_;

@@ -28,6 +28,8 @@ Plant::Plant(Service& service)
       timer_(service.executor()),
       effort_(JointVector::Zero(scenario_.robot.size())),
       outgoing_effort_(effort_),
+      members_(scenario_.controllers.size()),
+      failure_script_(scenario_.failures, controllerNames(scenario_)),
       state_out_(service, dds::topics::kPlantState, servicesBut(kPlantName, scenario_)),
       again_out_(service.output(dds::topics::kPlantStateAgain)),
       reply_out_(service.output(dds::topics::kSimReply)),
@@ -38,11 +40,9 @@ Plant::Plant(Service& service)
       plan_out_(service.output(dds::topics::kSwapPlan, withRecorder(controllerNames(scenario_), scenario_))),
       outcome_out_(service.output(dds::topics::kSwapOutcome, withRecorder({}, scenario_))),
       report_out_(service.output(dds::topics::kSwapReport, withRecorder({}, scenario_))),
-      baton_out_(service.output(dds::topics::kBatonStatus)) {
+      baton_out_(service.output(dds::topics::kBatonStatus)),
+      decision_out_(service.output(dds::topics::kDecision, withRecorder({}, scenario_))) {
   prepare(state_message_);
-  speakers_.resize(scenario_.controllers.size());
-  successors_.resize(scenario_.controllers.size());
-  refusals_.resize(scenario_.controllers.size());
   scheduled_.reserve(scenario_.swaps.size() + kMaxScheduled);
   scheduleSwaps();
   for (const std::string& name : servicesBut(kPlantName, scenario_)) waited_for_.insert(name);
@@ -107,7 +107,7 @@ std::string Plant::holderText() const {
 }
 
 bool Plant::speaksFor(int member, const dds::RawSample& sample) const {
-  return member != kBrake && dds::prefixOf(sample.writer) == speakers_[static_cast<std::size_t>(member)].prefix;
+  return member != kBrake && dds::prefixOf(sample.writer) == members_[static_cast<std::size_t>(member)].speaker.prefix;
 }
 
 const std::string& Plant::nameOf(int member) const {
@@ -121,6 +121,9 @@ void Plant::startWhenAllAreReady() {
   started_ns_ = steadyNow();
   pacer_.anchor(master_.step(), started_ns_);
   warned_step_ = kNever;
+  for (const int member : absentAtBegin()) {
+    arbiter_.memberFailed(member, master_.step(), "it had failed before the first step");
+  }
   arbiter_.open(master_.step());
   service_.event(msg::SEVERITY_INFO, "start", holderText() + " holds the baton");
   if (service_.options().starts_paused) master_.pause();
@@ -152,6 +155,10 @@ void Plant::openStep() {
     effort_ = arm_.brakeEffort();
     master_.commandArrived(step);
   }
+  if (!master_.isOver()) {
+    stopAsPlanned();
+    failAsPlanned();
+  }
   planSwaps();
 }
 
@@ -173,30 +180,6 @@ void Plant::archive(StateArchive& state) {
   state(chain_hash_, missed_, missed_in_a_row_, metered_plan_);
   meter_.archive(state);
   archiveScheduled(state);
-}
-
-void Plant::memberFailed(int member, const char* reason) {
-  const std::uint64_t step = master_.step();
-  const bool was_holder = member == arbiter_.holder();
-  const bool was_outgoing = member == arbiter_.outgoingAt(step);
-  arbiter_.memberFailed(member, step, reason);
-  if (was_holder && !master_.hasCommand()) {
-    keepTorque();  // the open step is its own still
-    master_.commandArrived(step);
-  }
-  if (was_outgoing) master_.needOutgoing(false);
-  dry_runs_.memberFailed(member);
-  publishDryRuns();
-  publishBaton();
-  if (reset_) resetAcknowledged(nameOf(member));
-}
-
-void Plant::memberReturned(int member) {
-  if (!arbiter_.hasFailed(member)) return;
-  arbiter_.memberReturned(member);
-  if (arbiter_.hasFailed(member)) return;  // the open step is its own still
-  service_.event(msg::SEVERITY_INFO, "returned", nameOf(member) + " answers again and stands by");
-  publishBaton();
 }
 
 void Plant::keepTorque() {
@@ -239,6 +222,7 @@ void Plant::tick() {
   considerSwap();
   prepareReset();
   if (reset_ && reset_->phase) return;  // whoever ends the reset arms the timer again
+  for (int member = 0; member < static_cast<int>(members_.size()); ++member) commandedAsPlanned(member);  // or never
   const Hold missing = master_.inputsHold();
   if (missing == Hold::kNone) {
     missed_in_a_row_ = 0;
@@ -252,7 +236,8 @@ void Plant::tick() {
     }
     if (give_up && !master_.hasCommand() && missing != Hold::kContact) {
       service_.event(msg::SEVERITY_ERROR, "missed", nameOf(arbiter_.holder()) + " was silent for too many steps");
-      arbiter_.memberFailed(arbiter_.holder(), master_.step(), "it was silent for too many steps");
+      members_[static_cast<std::size_t>(arbiter_.holder())].is_lost = true;
+      decideFailure(arbiter_.holder(), "it was silent for too many steps");
       missed_in_a_row_ = 0;  // counted anew for whoever is next
     } else if (missed_in_a_row_ == scenario_.max_missed_steps + 1) {
       service_.event(msg::SEVERITY_WARNING, "missed",
@@ -371,7 +356,7 @@ void Plant::watchLateness() {
       return abort("the step waits for " + who + ", too long");
     }
     service_.event(msg::SEVERITY_ERROR, "late", nameOf(member) + " is silent: it is taken for failed");
-    memberFailed(member, "it was silent for too long");
+    memberLost(member, "it was silent for too long");
     return proceed();
   }
   constexpr double kWarnAfter_s = 1.0;

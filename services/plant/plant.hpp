@@ -7,6 +7,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -15,6 +16,7 @@
 
 #include "control/arm.hpp"
 #include "control/handover_meter.hpp"
+#include "failure_script.hpp"
 #include "runtime/checkpoint.hpp"
 #include "runtime/loop_output.hpp"
 #include "runtime/service.hpp"
@@ -62,9 +64,21 @@ class Plant {
   void giveUpReset();
   void dropReset(const std::string& reason);
   void abort(const std::string& reason);
-  void memberFailed(int member, const char* reason);
-  void memberReturned(int member);
+  void newcomerStandsBy(const msg::ControllerStatus& status, const dds::RawSample& sample);
   void resumeFromCheckpoint();
+  // plant_failures.cpp: who is lost, who comes back, and what else a re-run has to know
+  void memberLost(int member, const char* reason);
+  void memberFound(int member);
+  void takeForFailed(int member, const char* reason);
+  void decideFailure(int member, const char* reason);
+  void letReturn(int member);
+  [[nodiscard]] std::vector<int> absentAtBegin();
+  void failAsPlanned();                 // what the scenario plans for the step that has just opened
+  void commandedAsPlanned(int member);  // the command of a member that fails behind it is here
+  void stopAsPlanned();
+  [[nodiscard]] bool stopAt(std::uint64_t step);
+  void decideEnd(std::uint64_t step);
+  [[nodiscard]] msg::Decision decisionOf(msg::DecisionCause cause, int member) const;
   // plant_baton.cpp: handovers
   [[nodiscard]] static ArbiterConfig arbiterConfig(const Scenario& scenario);
   void scheduleSwaps();
@@ -76,6 +90,7 @@ class Plant {
   void dryRunsKnowStep();
   void publishDryRuns();
   void publishSwapActions();
+  void decideSwap(const HandoverPlan& plan);
   void publishPlan(const HandoverPlan& plan, std::uint64_t id, msg::SwapPhase phase);
   void publishRefusal(const HandoverPlan& plan, const char* reason);
   void publishDone(const HandoverPlan& plan, const char* reason, const JointVector& raw_step,
@@ -123,14 +138,25 @@ class Plant {
     dds::GuidPrefix prefix{};
     std::int32_t pid = 0;  // 0: none yet
   };
-  std::vector<Speaker> speakers_;    // by member
-  std::vector<Speaker> successors_;  // ready before their predecessor was known to have failed
-
   struct Refusal {
     std::uint64_t step = 0;
     ReasonText reason{};  // empty: none
   };
-  std::vector<Refusal> refusals_;  // the last one of each member
+  /// A controller, by the arbiter's number. The arbiter takes it for failed as long as it is lost, for either cause.
+  struct Member {
+    Speaker speaker;
+    Speaker successor;                  // ready before its predecessor was known to have failed
+    Refusal refusal;                    // the last one
+    bool is_lost = false;               // gone, silent, or talking nonsense
+    bool is_new = false;                // since it was lost: another process
+    bool is_lost_as_planned = false;    // the scenario says so
+    bool fails_when_commanded = false;  // the same, once its command for the open step is here
+  };
+  std::vector<Member> members_;
+  std::map<std::string, Speaker, std::less<>> newcomers_;  // ready controllers that are no members yet
+  FailureScript failure_script_;
+  std::size_t next_stop_ = 0;  // of those that the scenario plans
+  static constexpr const char* kPlannedFailure = "the scenario plans it";
 
   /// A reset that has been asked for.
   struct Reset {
@@ -172,6 +198,7 @@ class Plant {
   dds::Writer<msg::SwapOutcome>& outcome_out_;
   dds::Writer<msg::SwapReport>& report_out_;
   dds::Writer<msg::BatonStatus>& baton_out_;
+  dds::Writer<msg::Decision>& decision_out_;
   msg::PlantState state_message_;
 };
 

@@ -45,7 +45,12 @@ ArbiterConfig Plant::arbiterConfig(const Scenario& scenario) {
 void Plant::scheduleSwaps() {
   scheduled_.clear();
   for (const PlannedSwap& swap : scenario_.swaps) {
-    scheduled_.push_back({.request_id = 0, .target = memberCalled(swap.to), .at_step = swap.at_step});
+    scheduled_.push_back({.request_id = 0,
+                          .target = memberCalled(swap.to),
+                          .at_step = swap.at_step,
+                          .force = swap.force,
+                          .hard = swap.hard,
+                          .blend_steps = swap.blend_steps});
   }
 }
 
@@ -98,14 +103,16 @@ void Plant::onSwapRequest(const msg::SwapRequest& message) {
   }
   if (message.dry_run()) return onDryRun(request, message.target().c_str());
   const std::uint64_t earliest = step + scenario_.baton.margin_steps + 1;
-  const bool can_wait = request.at_step > earliest && scheduled_.size() < scheduled_.capacity() &&
-                        (master_.endStep() == 0 || request.at_step < master_.endStep());
+  const bool can_wait = request.at_step > earliest && (master_.endStep() == 0 || request.at_step < master_.endStep());
   if (master_.isOver()) {
     publishRefusal(arbiter_.planFor(request, step), "the run is over");
   } else if (static_cast<double>(message.blend_ns()) * 1e-9 > kMaxBlend_s) {
     publishRefusal(arbiter_.planFor(request, step), "the blend is longer than 10 s");
   } else if (request.target == kBrake) {
     arbiter_.refuseUnknown(request.request_id, message.target().c_str(), step);
+  } else if (can_wait && scheduled_.size() == scheduled_.capacity()) {
+    // To plan it now would block all others until then.
+    publishRefusal(arbiter_.planFor(request, step), "too many handovers wait for their time");
   } else if (can_wait) {
     scheduled_.push_back(request);  // asked for again when its time has come: until then nothing else is blocked
   } else {
@@ -183,13 +190,14 @@ void Plant::publishSwapActions() {
     switch (action->kind) {
       case ArbiterAction::Kind::kPrepare:
         timing_.planned(plan.plan_id, steadyNow());
+        decideSwap(plan);
         publishPlan(plan, plan.plan_id, msg::SWAP_PREPARE);
         break;
       case ArbiterAction::Kind::kCommit: publishPlan(plan, plan.plan_id, msg::SWAP_COMMIT); break;
       case ArbiterAction::Kind::kCancel: publishPlan(plan, plan.plan_id, msg::SWAP_CANCEL); break;
       case ArbiterAction::Kind::kRefused:
         if (plan.incoming != kBrake) {
-          refusals_[static_cast<std::size_t>(plan.incoming)] = {plan.decided_at_step, action->reason};
+          members_[static_cast<std::size_t>(plan.incoming)].refusal = {plan.decided_at_step, action->reason};
         }
         publishRefusal(plan, action->reason.data());
         service_.event(msg::SEVERITY_WARNING, "swap_refused",
@@ -207,6 +215,18 @@ void Plant::publishSwapActions() {
     }
   }
   if (has_news) publishBaton();
+}
+
+/// What the scenario plans is in the scenario.
+void Plant::decideSwap(const HandoverPlan& plan) {
+  if (plan.request_id == 0) return;
+  msg::Decision decision = decisionOf(msg::DECISION_SWAP, plan.incoming);
+  decision.step(plan.decided_at_step);
+  decision.at_step(plan.at_step);
+  decision.force(plan.force);
+  decision.hard(plan.hard);
+  decision.blend_steps(plan.blend_steps);
+  decision_out_.write(decision);
 }
 
 void Plant::publishPlan(const HandoverPlan& plan, std::uint64_t id, msg::SwapPhase phase) {
@@ -272,7 +292,7 @@ void Plant::publishBaton() {
     status.at_step(plan->at_step);
   }
   for (int member = 0; member < static_cast<int>(arbiter_.members().size()); ++member) {
-    const Refusal& refusal = refusals_[static_cast<std::size_t>(member)];
+    const Refusal& refusal = members_[static_cast<std::size_t>(member)].refusal;
     msg::BatonMember& one = status.members().emplace_back();
     one.name(nameOf(member));
     one.failed(arbiter_.hasFailed(member));

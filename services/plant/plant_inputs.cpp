@@ -1,11 +1,23 @@
 // What arrives at the plant: contacts, commands, the operator's requests, the services' readiness.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
+#include "control/law.hpp"
 #include "plant.hpp"
 
 namespace baton {
+namespace {
+
+/// nullptr for a law of somebody else's.
+const LawInfo* lawCalled(std::string_view name) {
+  const auto& laws = allLaws();
+  const auto found = std::find_if(laws.begin(), laws.end(), [&](const LawInfo& law) { return law.name == name; });
+  return found == laws.end() ? nullptr : &*found;
+}
+
+}  // namespace
 
 void Plant::onContact(const msg::Contact& message, const dds::RawSample& sample) {
   if (message.step() != master_.step() || master_.hasContact()) return;
@@ -24,7 +36,7 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
     std::snprintf(wrong, sizeof wrong, "it commanded step %llu while step %llu was open",
                   static_cast<unsigned long long>(message.step()), static_cast<unsigned long long>(master_.step()));
     service_.event(msg::SEVERITY_ERROR, "bad_command", nameOf(member) + ": " + wrong);
-    memberFailed(member, wrong);
+    memberLost(member, wrong);
     return proceed();
   }
   if (message.step() != master_.step()) return;
@@ -44,7 +56,6 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
   if (!is_usable) {
     // It never reaches the integrator: the joints keep their torque for this step, and the next one is somebody else's.
     effort = arm_.holdingEffort(message.step());
-    arbiter_.memberFailed(member, message.step(), objection.data());
     service_.event(msg::SEVERITY_ERROR, "bad_command", nameOf(member) + ": " + objection.data());
   }
   if (from_holder) {
@@ -56,6 +67,11 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
     outgoing_effort_ = effort;
     hashes_.outgoing_command = dds::chainHash(0, sample.payload);
     master_.outgoingCommandArrived(message.step());
+  }
+  if (members_[static_cast<std::size_t>(member)].fails_when_commanded) {
+    commandedAsPlanned(member);
+  } else if (!is_usable) {
+    memberLost(member, objection.data());
   }
   proceed();
 }
@@ -69,28 +85,35 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
       return service_.giveWay(name + " answers the steps of another plant");
     }
     waited_for_.erase(name);
+    if (member == kBrake && status.role() == "controller") {
+      newcomers_[name] = {dds::prefixOf(sample.writer), status.pid()};
+      return;
+    }
     if (member != kBrake) {
       // Another one of that name is heard only when this one has failed, of which word may come later.
-      Speaker& speaker = speakers_[static_cast<std::size_t>(member)];
+      Member& one = members_[static_cast<std::size_t>(member)];
       const Speaker ready{dds::prefixOf(sample.writer), status.pid()};
-      if (speaker.pid == 0 || arbiter_.hasFailed(member)) {
-        speaker = ready;
-        memberReturned(member);
-      } else if (speaker.prefix != ready.prefix) {
-        successors_[static_cast<std::size_t>(member)] = ready;
+      if (one.speaker.pid == 0 || one.is_lost) {
+        one.is_new = one.speaker.prefix != ready.prefix;
+        one.speaker = ready;
+        memberFound(member);
+      } else if (one.speaker.prefix != ready.prefix) {
+        one.successor = ready;
       }
     }
     startWhenAllAreReady();
     if (member == kBrake) askAgain();  // a part that was started again has not seen the open step
   } else if (status.state() == msg::SERVICE_FAILED && !master_.isOver()) {
+    if (newcomers_.erase(name) > 0) return;
     if (member == kBrake || master_.phase() == SimPhase::kStarting)
       return abort(name + " failed: " + status.text().c_str());
-    Speaker& speaker = speakers_[static_cast<std::size_t>(member)];
-    if (speaker.pid != status.pid()) return;  // not the one that speaks for it
-    memberFailed(member, status.text().c_str());
-    if (Speaker& successor = successors_[static_cast<std::size_t>(member)]; successor.pid != 0) {
-      speaker = std::exchange(successor, {});
-      memberReturned(member);
+    Member& one = members_[static_cast<std::size_t>(member)];
+    if (one.speaker.pid != status.pid()) return;  // not the one that speaks for it
+    memberLost(member, status.text().c_str());
+    if (one.successor.pid != 0) {
+      one.speaker = std::exchange(one.successor, {});
+      one.is_new = true;
+      memberFound(member);
     }
     proceed();
   }
@@ -100,9 +123,26 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
 /// never returns by itself.
 void Plant::onControllerStatus(const msg::ControllerStatus& status, const dds::RawSample& sample) {
   const int member = memberCalled(status.name().c_str());
-  if (master_.isOver() || !speaksFor(member, sample) || !arbiter_.hasFailed(member)) return;
   const bool stands_by = status.state() == msg::CONTROLLER_STANDBY || status.state() == msg::CONTROLLER_COLD;
-  if (stands_by && status.step() > arbiter_.failedAt(member)) memberReturned(member);
+  if (master_.isOver() || !stands_by) return;
+  if (member == kBrake) return newcomerStandsBy(status, sample);
+  if (!speaksFor(member, sample)) return;
+  if (const LawInfo* law = lawCalled(status.law().c_str())) arbiter_.memberChanged(member, law->requires_contact);
+  const bool is_lost = members_[static_cast<std::size_t>(member)].is_lost;
+  if (is_lost && arbiter_.hasFailed(member) && status.step() > arbiter_.failedAt(member)) memberFound(member);
+}
+
+/// A controller that the scenario did not have computes along: from now on the baton may go to it.
+void Plant::newcomerStandsBy(const msg::ControllerStatus& status, const dds::RawSample& sample) {
+  const auto found = newcomers_.find(std::string_view(status.name().c_str()));
+  const LawInfo* law = lawCalled(status.law().c_str());
+  if (found == newcomers_.end() || found->second.prefix != dds::prefixOf(sample.writer) || law == nullptr) return;
+  if (arbiter_.members().size() == msg::MAX_CONTROLLERS) return;  // the supervisor starts no more than that
+  arbiter_.memberJoined({found->first, law->requires_contact});
+  members_.emplace_back().speaker = found->second;
+  newcomers_.erase(found);
+  service_.event(msg::SEVERITY_INFO, "joined", arbiter_.members().back().name + " stands by");
+  publishBaton();
 }
 
 void Plant::onSimRequest(const msg::SimRequest& request) {
@@ -164,9 +204,7 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
       case msg::SIM_STOP:
         if (request.at_step() == 0) {
           reply.accepted(true);
-        } else if (master_.endAt(request.at_step())) {
-          arbiter_.endAt(request.at_step());
-          publishSwapActions();
+        } else if (stopAt(request.at_step())) {
           reply.accepted(true);
         } else {
           refuse("expected a step after " + std::to_string(step) + " and not after the end of the run");
@@ -178,6 +216,7 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
   reply_out_.write(reply);
   if (request.action() == msg::SIM_STOP && reply.accepted() && request.at_step() == 0) {
     end_reason_ = "stopped by request";
+    decideEnd(step);
     master_.finish();
     return finish();
   }

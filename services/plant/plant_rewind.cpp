@@ -25,7 +25,8 @@ void Plant::publishRewind(msg::RewindPhase phase) {
   reset_->phase = phase;
   for (const std::string& name : servicesBut(kPlantName, scenario_)) {
     const int member = memberCalled(name);
-    const bool is_gone = member == kBrake ? name == kRecorderName && has_recorder_failed_ : arbiter_.hasFailed(member);
+    const bool is_gone = member == kBrake ? name == kRecorderName && has_recorder_failed_
+                                          : members_[static_cast<std::size_t>(member)].is_lost;
     if (!is_gone) reset_->waited_for.insert(name);
   }
   msg::Rewind message;
@@ -72,8 +73,9 @@ void Plant::finishReset() {
   publishSwapActions();
   take_ = next_take_++;
   scheduleSwaps();
-  arbiter_.rewind();
   master_.rewind();
+  next_stop_ = 0;
+  arbiter_.rewind(absentAtBegin());
   if (completed_) publishRefusal(*completed_, "the run was reset");
   completed_.reset();
   contact_ = Contact{};

@@ -35,6 +35,8 @@ class Ledger {
   bool book(const Key& key, std::uint64_t sequence, std::span<const std::byte> payload);
   void addManifest(const msg::ServiceManifest& manifest);
 
+  /// Another service has joined, of whom a manifest is to be expected.
+  void expect(const std::string& service) { services_.insert(service); }
   /// So many samples came and found no room.
   void dropped(std::uint64_t count) { dropped_ = count; }
   /// The service has failed: its manifest will not come.

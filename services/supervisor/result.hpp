@@ -22,7 +22,7 @@ struct RunResult {
   msg::TimingStatus timing;      // likewise
   msg::RecorderStatus recorder;  // the recorder's last word
   std::vector<msg::SwapOutcome> swaps;
-  std::vector<msg::SwapReport> reports;  // on those that were done
+  std::vector<msg::SwapReport> reports;     // on those that were done
   std::map<std::string, long> resident_kB;  // by service, when the run ended
 };
 

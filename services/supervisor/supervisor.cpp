@@ -31,10 +31,12 @@ bool isRefusal(const Child::End& end) {
 Supervisor::Supervisor(Service& service, Deployment deployment)
     : service_(service),
       deployment_(std::move(deployment)),
+      scenario_(service.scenario()),
       start_limit_(service.executor()),
       patience_(service.executor()),
       sim_out_(service.output(dds::topics::kSimStatus)),
-      request_out_(service.output(dds::topics::kSimRequest)) {
+      request_out_(service.output(dds::topics::kSimRequest)),
+      launch_out_(service.output(dds::topics::kLaunchReply)) {
   service.answersNoSteps();
   service.onSignal([this] { onSignal(); });
   service.onEnd([this] { runIsOver(); });
@@ -51,6 +53,8 @@ Supervisor::Supervisor(Service& service, Deployment deployment)
   });
   service.input(dds::topics::kSwapReport, {},
                 [this](const msg::SwapReport& report, const dds::RawSample&) { reports_.push_back(report); });
+  service.input(dds::topics::kLaunchRequest, {},
+                [this](const msg::LaunchRequest& request, const dds::RawSample&) { onLaunchRequest(request); });
 }
 
 ExitCode Supervisor::run() {
@@ -59,7 +63,7 @@ ExitCode Supervisor::run() {
   // A run that was reset is its last take.
   std::erase_if(swaps_, [&](const msg::SwapOutcome& swap) { return swap.take() != sim_.take(); });
   for (const msg::SwapOutcome& swap : swaps_) judge(swap);
-  writeResult(deployment_.info, service_.scenario(),
+  writeResult(deployment_.info, scenario_,
               {.exit_code = exit_code_,
                .reason = reason_,
                .startup_s = startup_s_,
@@ -74,17 +78,17 @@ ExitCode Supervisor::run() {
 
 /// A run has failed when a handover went otherwise than the scenario says.
 void Supervisor::judge(const msg::SwapOutcome& swap) {
-  const Scenario& scenario = service_.scenario();
+  const Scenario& scenario = scenario_;
   const std::string outgoing = swap.outgoing().c_str();
-  if (swap.done() && swap.plan_id() == 0 && !scenario.wantsFaultOf(outgoing)) {
+  if (swap.done() && swap.plan_id() == 0 && !scenario.wantsFaultOf(outgoing) && !scenario.plansFailureOf(outgoing)) {
     fail(ExitCode::kFailed, outgoing + " lost the baton: " + swap.reason().c_str());
   }
   for (const PlannedSwap& planned : scenario.swaps) {
     const bool has_come = swap.at_step() < sim_.step();  // else the run ended before
     if (swap.request_id() != 0 || planned.at_step != swap.at_step() || planned.to != swap.incoming().c_str()) continue;
-    if (!swap.done() && !planned.is_to_be_refused && has_come) {
+    if (!swap.done() && planned.expect == SwapExpectation::kDone && has_come) {
       fail(ExitCode::kFailed, "a handover that the scenario plans was refused");
-    } else if (swap.done() && planned.is_to_be_refused) {
+    } else if (swap.done() && planned.expect == SwapExpectation::kRefused) {
       fail(ExitCode::kFailed, "a handover took place that the scenario expects to be refused");
     }
   }
@@ -94,7 +98,7 @@ void Supervisor::judge(const msg::SwapOutcome& swap) {
 // ------------------------------------------------------------------------------------------------------------
 
 void Supervisor::startAll() {
-  const Scenario& scenario = service_.scenario();
+  const Scenario& scenario = scenario_;
   // The recorder first and the plant last: whoever has to listen is there before there is something to hear.
   if (scenario.recording.enabled) start(kRecorderName, kRecorderName, "");
   if (scenario.hasEnvironment()) start(kEnvironmentName, kEnvironmentName, "");
@@ -167,14 +171,15 @@ void Supervisor::childEnded(Child& child, const Child::End& end) {
 
 void Supervisor::childFailed(Child& child, const Child::End& end) {
   const std::string& name = child.name();
-  const std::string why = name + " ended in the middle of the run: " + end.text();
   const bool has_started = startup_s_ >= 0.0;
-  service_.event(msg::SEVERITY_ERROR, "child_exit", why);
+  const bool is_wanted = asked_to_end_.erase(name) > 0;
+  const std::string why = name + (is_wanted ? " was stopped" : " ended in the middle of the run: " + end.text());
+  service_.event(is_wanted ? msg::SEVERITY_INFO : msg::SEVERITY_ERROR, "child_exit", why);
   const bool is_controller = roles_[name] == "controller";
-  const bool is_restarted = has_started && restarts_left_[name]-- > 0;
-  if (has_started && (is_controller || is_restarted)) {
+  const bool is_restarted = has_started && !is_wanted && restarts_left_[name]-- > 0;
+  if (has_started && !is_wanted && (is_controller || is_restarted)) {
     spdlog::error("{}\n{}", why, lastLines(child.command().log_file, 5));
-    if (!service_.scenario().wantsFaultOf(name)) fail(ExitCode::kFailed, why);
+    if (!scenario_.wantsFaultOf(name)) fail(ExitCode::kFailed, why);
   }
   // Who comes back is waited for like anybody who is late; what the end of the others means, the plant decides.
   if (is_restarted && !is_controller) return restart(name);
@@ -184,7 +189,7 @@ void Supervisor::childFailed(Child& child, const Child::End& end) {
   failed.role(roles_[name]);
   failed.state(msg::SERVICE_FAILED);
   failed.pid(child.pid());
-  failed.text(end.text());
+  failed.text(is_wanted ? "it was stopped" : end.text());
   {
     const std::lock_guard lock(service_.mutex());
     status_out_.at(name)->write(failed);
@@ -222,7 +227,7 @@ void Supervisor::fail(ExitCode code, const std::string& reason) {
 void Supervisor::restart(const std::string& name) {
   try {
     const std::string role = roles_[name];
-    start(role, name, role == "controller" ? service_.scenario().controller(name).law : "");
+    start(role, name, role == "controller" ? scenario_.controller(name).law : "");
   } catch (const Error& error) {
     spdlog::error("{} is not started again: {}", name, error.what());
   }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,11 @@ class Supervisor {
   void judge(const msg::SwapOutcome& swap);
   void fail(ExitCode code, const std::string& reason);
   void restart(const std::string& name);
+  // launch.cpp: controllers that come and go while it runs
+  void onLaunchRequest(const msg::LaunchRequest& request);
+  [[nodiscard]] msg::LaunchReply startController(const msg::LaunchRequest& request);
+  [[nodiscard]] msg::LaunchReply stopController(const msg::LaunchRequest& request);
+  [[nodiscard]] Child* runningChild(const std::string& name);
   void onSimStatus(const msg::SimStatus& status);
   [[nodiscard]] msg::SimStatus lastSimStatus();
   void onSignal();
@@ -52,8 +58,10 @@ class Supervisor {
 
   Service& service_;
   Deployment deployment_;
+  Scenario scenario_;  // with the controllers that were started since
   std::map<std::string, std::string> roles_;  // of services, by name
   std::map<std::string, int> restarts_left_;
+  std::set<std::string, std::less<>> asked_to_end_;
   std::vector<std::unique_ptr<Child>> children_;
   boost::asio::steady_timer start_limit_;
   boost::asio::steady_timer patience_;
@@ -76,6 +84,7 @@ class Supervisor {
   std::map<std::string, dds::Writer<msg::ServiceStatus>*> status_out_;
   dds::Writer<msg::SimStatus>& sim_out_;  // on behalf of a plant that died
   dds::Writer<msg::SimRequest>& request_out_;
+  dds::Writer<msg::LaunchReply>& launch_out_;
 };
 
 }  // namespace baton

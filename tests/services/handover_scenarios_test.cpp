@@ -28,8 +28,9 @@ Walk walkOf(const std::string& name) {
   for (const ControllerConfig& one : scenario.controllers) walk.laws[one.name] = one.law;
   std::string holder = scenario.active;
   for (const PlannedSwap& swap : scenario.swaps) {
-    (swap.is_to_be_refused ? walk.refused : walk.done).insert({walk.laws.at(holder), walk.laws.at(swap.to)});
-    if (!swap.is_to_be_refused) holder = swap.to;
+    const bool is_refused = swap.expect == SwapExpectation::kRefused;
+    (is_refused ? walk.refused : walk.done).insert({walk.laws.at(holder), walk.laws.at(swap.to)});
+    if (!is_refused) holder = swap.to;
     ++walk.swaps;
   }
   return walk;

@@ -92,11 +92,12 @@ Figure readStudy(const YamlNode& node) {
 }
 
 Erratum readErratum(const YamlNode& node, const std::vector<Figure>& figures) {
-  const YamlMap map = node.map({"where", "printed", "right", "evidence", "figures"});
+  const YamlMap map = node.map({"where", "printed", "right", "evidence", "printed_cannot_run", "figures"});
   Erratum erratum{.where = map["where"].text(kMaxText),
                   .printed = map["printed"].text(kMaxText),
                   .right = map["right"].text(kMaxText),
                   .evidence = map["evidence"].text(kMaxText),
+                  .printed_cannot_run = map.booleanOr("printed_cannot_run", false),
                   .figures = {}};
   std::vector<std::string> numbers;
   for (const Figure& figure : figures) numbers.push_back(figure.number);

@@ -46,6 +46,7 @@ struct Erratum {
   std::string printed;
   std::string right;
   std::string evidence;              // what shows it
+  bool printed_cannot_run = false;   // only what is right has been run
   std::vector<std::string> figures;  // on which that rests, by their numbers; none: on tests, or on looking
 };
 

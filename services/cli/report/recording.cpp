@@ -28,15 +28,19 @@ bool isCertified(const mcap::Reader& reader) {
   return metadataValue(reader, "baton.certificate", "complete") == "true";
 }
 
-std::uint64_t lastTakeBegin(const mcap::Reader& reader) {
-  std::uint64_t begin = 0;
+std::uint64_t lastTakeBegin(const mcap::Reader& reader) { return lastTake(reader).begin_ns; }
+
+Take lastTake(const mcap::Reader& reader) {
+  Take last;
   reader.forEachMessage({.topics = {dds::topics::kRewind.name}, .order = mcap::MessageFilter::Order::kFile},
                         [&](const mcap::MessageView& view) {
                           msg::Rewind rewind;
                           const bool commits = dds::decode(view.data, rewind) && rewind.phase() == msg::REWIND_COMMIT;
-                          if (commits) begin = std::max(begin, view.log_time_ns);
+                          if (commits && view.log_time_ns >= last.begin_ns) {
+                            last = {.number = rewind.take(), .begin_ns = view.log_time_ns};
+                          }
                         });
-  return begin;
+  return last;
 }
 
 }  // namespace baton

@@ -17,7 +17,14 @@ namespace baton {
 /// Complete, by the recording's own certificate.
 [[nodiscard]] bool isCertified(const mcap::Reader& reader);
 
-/// Log time from which on everything belongs to the last take of a run that has been reset; 0 when it never was.
+/// The last take of a run: how often it has been reset before, and the log time from which on everything belongs to it;
+/// 0 when it never was.
+struct Take {
+  std::uint32_t number = 0;
+  std::uint64_t begin_ns = 0;
+};
+[[nodiscard]] Take lastTake(const mcap::Reader& reader);
+/// Where it begins.
 [[nodiscard]] std::uint64_t lastTakeBegin(const mcap::Reader& reader);
 
 }  // namespace baton

@@ -115,7 +115,7 @@ Check followsScenario(const Trace& run) {
     }
   }
   return {.what = "largest difference between the recorded reference and the scenario's",
-          .unit = "SI",
+          .unit = "rad, m, or their rates",
           .predicted = 0.0,
           .measured = worst,
           .tolerance = 0.0};

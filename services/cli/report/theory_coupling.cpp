@@ -18,7 +18,8 @@ Checks sameBytesInOneProcess(const Inputs& in) {
     same += recorded == run.chainHash() ? 1 : 0;
     run.step();
   }
-  return {within("steps with the bytes of the run in one process", "", steps, static_cast<double>(same), 0.0)};
+  return {
+      within("steps whose bytes are those of the same run in one process", "", steps, static_cast<double>(same), 0.0)};
 }
 
 // The amplitude is multiplied by |lambda| a step, lambda the largest eigenvalue of the map of one step. As damping d of

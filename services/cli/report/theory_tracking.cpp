@@ -162,7 +162,7 @@ Checks tracks(const Inputs& in) {
     for (Eigen::Index k = 0; k <= restStep(run); ++k) {
       if (isForgotten(i, k)) worst.add(std::abs(linear.wanted(i, k) - linear.actual(i, k)));
     }
-    checks.push_back(within("largest error of " + name + " once the start is forgotten", unit, 0.0, worst,
+    checks.push_back(within("largest error of " + name + " once the error of the start has faded", unit, 0.0, worst,
                             halfStepTravel(run, linear, i)));
     checks.push_back(atRest("error of " + name + " at the end", unit, 0.0,
                             linear.wanted(i, restStep(run)) - linear.actual(i, restStep(run))));
@@ -173,8 +173,8 @@ Checks tracks(const Inputs& in) {
     turn.add(referenceAt(run, k).V_WE.tail<3>().norm() * run.scenario.stepSeconds() / 2.0);
     if (isForgotten(0, k) && isForgotten(1, k) && isForgotten(2, k)) worst.add(run.orientation.col(k).norm());
   }
-  checks.push_back(
-      within("largest angle from the desired orientation once the start is forgotten", "rad", 0.0, worst, turn));
+  checks.push_back(within("largest angle from the desired orientation once the error of the start has faded", "rad",
+                          0.0, worst, turn));
   checks.push_back(
       atRest("angle from the desired orientation at the end", "rad", 0.0, run.orientation.col(restStep(run)).norm()));
   return checks;
@@ -209,7 +209,7 @@ Checks adaptationIsInert(const Inputs& in) {
   const Eigen::Index from = with.steps() / 2, to = restStep(with);
   Checks checks;
   for (int i = 0; i < with.scenario.robot.size(); ++i) {
-    checks.push_back(within("part of the rms error of " + jointName(i) + " that it takes away, against nothing", "",
+    checks.push_back(within("part of the rms error of " + jointName(i) + " that it takes away: none to speak of", "",
                             0.0, 1.0 - rms(with.q_d - with.q, i, from, to) / rms(without.q_d - without.q, i, from, to),
                             1e-3));
   }

@@ -66,8 +66,8 @@ using AllTypes =
                    msg::Rewind, msg::RewindAck, msg::SwapRequest, msg::SwapPlan, msg::SwapAck, msg::SwapOutcome,
                    msg::SwapReport, msg::BatonMember, msg::BatonStatus, msg::ControllerStatus, msg::Parameter,
                    msg::ParameterStatus, msg::ParameterValue, msg::ParameterRequest, msg::ParameterReply, msg::Decision,
-                   msg::ServiceStatus, msg::Event, msg::StreamManifest, msg::ServiceManifest, msg::RecorderStatus,
-                   msg::ReplayStatus>;
+                   msg::LaunchRequest, msg::LaunchReply, msg::ServiceStatus, msg::Event, msg::StreamManifest,
+                   msg::ServiceManifest, msg::RecorderStatus, msg::ReplayStatus>;
 TYPED_TEST_SUITE(CodecTest, AllTypes);
 
 template <class... Types>

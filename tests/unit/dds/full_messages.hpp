@@ -303,9 +303,25 @@ inline void fill(msg::Decision& m) {
   m.hard(true);
   m.blend_steps(kId);
   m.commanded(true);
+  m.restarted(true);
   m.values().resize(msg::MAX_PARAMETERS);
   for (msg::ParameterValue& value : m.values()) fill(value);
   m.reason(std::string(200, 'r'));
+}
+
+inline void fill(msg::LaunchRequest& m) {
+  m.request_id(kId);
+  m.action(msg::LAUNCH_STOP);
+  m.name(fullName());
+  m.law(std::string(64, 'l'));
+  m.parameters(std::string(2000, 'p'));
+}
+
+inline void fill(msg::LaunchReply& m) {
+  m.request_id(kId);
+  m.accepted(true);
+  m.pid(-2'000'000'000);
+  m.reason(std::string(400, 'r'));
 }
 
 inline void fill(msg::ServiceStatus& m) {

@@ -98,8 +98,8 @@ std::vector<Row> topicTable() {
        topics::kRewind, topics::kRewindAck, topics::kSwapRequest, topics::kSwapPlan, topics::kSwapAck,
        topics::kSwapOutcome, topics::kSwapReport, topics::kBatonStatus, topics::kControllerStatus,
        topics::kParameterStatus, topics::kParameterRequest, topics::kParameterReply, topics::kDecision,
-       topics::kServiceStatus, topics::kServiceManifest, topics::kEvent, topics::kRecorderStatus,
-       topics::kReplayStatus);
+       topics::kLaunchRequest, topics::kLaunchReply, topics::kServiceStatus, topics::kServiceManifest, topics::kEvent,
+       topics::kRecorderStatus, topics::kReplayStatus);
   return rows;
 }
 

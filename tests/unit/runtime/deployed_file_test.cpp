@@ -126,7 +126,7 @@ TEST(DeployedDemo, TellsTheStoryItsCommentsTell) {
   EXPECT_EQ(s.active, "tracking");
   // One that is refused, before the wall; a handover in free motion, and one with the path inside the wall.
   EXPECT_EQ(s.swaps[0].to, "force");
-  EXPECT_TRUE(s.swaps[0].is_to_be_refused);
+  EXPECT_EQ(s.swaps[0].expect, SwapExpectation::kRefused);
   EXPECT_LT(height(s.swaps[0].at_step), wall);
   EXPECT_EQ(s.swaps[1].to, "impedance");
   EXPECT_NEAR(height(s.swaps[1].at_step), 0.555, 0.5e-3);

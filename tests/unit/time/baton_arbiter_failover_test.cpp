@@ -74,9 +74,23 @@ TEST(Failover, RemembersWhenWhoFailedUntilItReturnsAndThenItOnlyStandsBy) {
   run.handOverUpTo(kFirst);
   EXPECT_EQ(run.next(), kFirst);
   run.fail(kFirst);
-  run.arbiter.rewind();
+  run.arbiter.rewind({kFirst});
   EXPECT_TRUE(run.arbiter.hasFailed(kFirst));
   EXPECT_EQ(run.arbiter.failedAt(kFirst), 0u) << "steps are counted anew";
+}
+
+TEST(Failover, BehindAResetOnlyWhoIsAbsentHasFailed) {
+  ArbiterRun run;
+  run.runTo(7);
+  run.fail(kFirst);
+  run.fail(kSecond);
+  run.arbiter.rewind({});
+  EXPECT_FALSE(run.arbiter.hasFailed(kFirst) || run.arbiter.hasFailed(kSecond));
+  EXPECT_EQ(run.arbiter.open(0), kFirst);
+  run.drain();
+  run.arbiter.rewind({kSecond, kFirst});
+  EXPECT_TRUE(run.arbiter.hasFailed(kSecond));
+  EXPECT_EQ(run.arbiter.open(0), kSpare) << "no step is its own";
 }
 
 TEST(Failover, FromTheBrakeAFitControllerCanTakeOver) {

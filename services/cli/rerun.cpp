@@ -1,0 +1,64 @@
+#include "rerun.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+namespace baton {
+namespace {
+
+/// What was decided up to the last recorded step has to be decided again, so the end may not be nearer to it than a
+/// handover takes; and what is saved at the end of a run is not saved where a run was stopped.
+std::uint64_t endOf(const RecordedRun& run) {
+  const std::uint64_t behind = run.last_step + run.scenario.baton.margin_steps + 2;
+  return run.scenario.end_step == 0 ? behind : std::min(behind, run.scenario.end_step);
+}
+
+}  // namespace
+
+std::string Rerun::text() const {
+  if (const auto& parting = comparison.parting) {
+    return fmt::format("differs: first at step {} in {}", parting->step, parting->topic);
+  }
+  if (first_missing) {
+    return fmt::format("differs: ends before step {}: {}", *first_missing, result.at("reason").get<std::string>());
+  }
+  return fmt::format("identical: {} steps, {} decision{} taken from the recording, hash {}", steps, decisions,
+                     decisions == 1 ? "" : "s", hash);
+}
+
+Rerun rerun(const std::filesystem::path& recording, const std::filesystem::path& folder, RunRequest run,
+            const std::function<ExitCode(RunSession&)>& follow) {
+  const RecordedRun original = readRecordedRun(recording);
+  if (original.scenario.mode == SimMode::kRealtime) {
+    throw UsageError(recording.string() +
+                     ": expected a run in lockstep, found realtime, whose bytes depend on what came in time");
+  }
+  writeText(folder / "robot.yaml", original.robot_text);
+  writeText(folder / "scenario.yaml", repeatingScenario(original, endOf(original)));
+  run.scenario = (folder / "scenario.yaml").string();
+  if (original.checkpoint) {
+    run.checkpoint = (folder / "checkpoint.mcap").string();
+    writeText(run.checkpoint, *original.checkpoint);
+  }
+  Rerun made;
+  {
+    RunSession session(run, true);
+    (void)follow(session);
+    made.result = session.result();
+    made.recording = session.info().recording;
+  }
+  const HashedRun then = hashRun(recording), now = hashRun(made.recording);
+  made.comparison = compare(then, now);
+  made.steps = then.steps.size();
+  made.decisions = original.decisions.size();
+  made.hash = then.hash();
+  for (const auto& [step, hashes] : then.steps) {
+    if (now.steps.contains(step)) continue;
+    made.first_missing = step;
+    break;
+  }
+  return made;
+}
+
+}  // namespace baton

@@ -1,0 +1,34 @@
+/// A recorded run, done again from its file alone and compared byte by byte.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "bag_hash.hpp"
+#include "recorded_run.hpp"
+#include "run_session.hpp"
+
+namespace baton {
+
+struct Rerun {
+  Comparison comparison;                       // of the recording and its repetition
+  std::uint64_t steps = 0;                     // of the recording
+  std::optional<std::uint64_t> first_missing;  // step of the recording that the repetition has not
+  std::size_t decisions = 0;                   // that were repeated
+  std::uint64_t hash = 0;                      // of the recording
+  nlohmann::ordered_json result;               // of the repetition, as in its result.json
+  std::filesystem::path recording;             // the repetition
+
+  [[nodiscard]] bool isIdentical() const { return !comparison.parting && !first_missing; }
+  /// The verdict as a sentence.
+  [[nodiscard]] std::string text() const;
+};
+
+/// Runs the whole distributed system in `folder`, which is there. `run` says in which cell and to which file; `follow`
+/// waits for its end. Throws UsageError for what cannot be repeated, and what a run throws.
+[[nodiscard]] Rerun rerun(const std::filesystem::path& recording, const std::filesystem::path& folder, RunRequest run,
+                          const std::function<ExitCode(RunSession&)>& follow);
+
+}  // namespace baton

@@ -1,0 +1,76 @@
+#include "rerun_command.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "rerun.hpp"
+#include "run_commands.hpp"
+#include "runtime/command_line.hpp"
+#include "runtime/json.hpp"
+#include "runtime/paths.hpp"
+
+namespace baton {
+namespace {
+namespace fs = std::filesystem;
+
+struct RerunRequest {
+  std::string recording;
+  RunRequest run;
+  bool json = false;
+};
+
+nlohmann::ordered_json toJson(const Rerun& made, const std::string& recording) {
+  nlohmann::ordered_json json{{"file", recording},           {"identical", made.isIdentical()},
+                              {"steps", made.steps},         {"steps_compared", made.comparison.steps},
+                              {"decisions", made.decisions}, {"hash", std::to_string(made.hash)},
+                              {"verdict", made.text()}};
+  if (const auto& parting = made.comparison.parting) {
+    json["first_different_step"] = parting->step;
+    json["topic"] = parting->topic;
+  } else if (made.first_missing) {
+    json["first_missing_step"] = *made.first_missing;
+  }
+  json["rerun"] = made.result;
+  return json;
+}
+
+void tellRerun(const RerunRequest& request, ExitCode& exit_code) {
+  const fs::path folder = stateFolder() / "reruns" / newRunId();
+  fs::create_directories(folder);
+  const bool is_kept = !request.run.out.empty();
+  RunRequest run = request.run;
+  if (!is_kept) run.out = (folder / "rerun.mcap").string();
+  const Rerun made = rerun(request.recording, folder, run, [](RunSession& session) { return runToTheEnd(session); });
+  if (request.json) {
+    std::puts(toText(toJson(made, request.recording)).c_str());
+  } else {
+    std::printf("%s\n", made.text().c_str());
+    if (is_kept || !made.isIdentical()) std::printf("recording %s\n", made.recording.c_str());
+  }
+  if (made.isIdentical()) fs::remove_all(folder);  // else it is there to look into
+  exit_code = made.isIdentical() ? ExitCode::kOk : ExitCode::kFailed;
+}
+
+}  // namespace
+
+void addRerunCommand(CLI::App& app, ExitCode& exit_code) {
+  const auto request = std::make_shared<RerunRequest>();
+  request->run.cell = "rerun";
+  CLI::App* command =
+      app.add_subcommand("rerun", "do a recorded run again, from its file alone, and compare the bytes");
+  command->footer(
+      "Everything that was decided while the run went on is in the recording: handovers and parameters that operators\n"
+      "asked for, controllers that were lost and came back, where it was stopped. These are repeated at their steps,\n"
+      "with processes that live and without timers, and every payload of the loop is compared.\n"
+      "Exit codes: 0 identical, 1 not, with the first step and topic.");
+  command->add_option("recording", request->recording, "recording of a run in lockstep (MCAP)")->required();
+  command->add_option("--out", request->run.out, "file to record to (default: kept only when it differs)");
+  command->add_flag("--overwrite", request->run.overwrite, "replace the file --out names");
+  addCellOptions(*command, request->run.cell, request->run.domain);
+  addTransport(*command, request->run.transport);
+  command->add_flag("--json", request->json, "print the verdict as JSON");
+  command->callback([=, &exit_code] { tellRerun(*request, exit_code); });
+}
+
+}  // namespace baton
