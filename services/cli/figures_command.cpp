@@ -16,6 +16,7 @@
 #include "report/batch.hpp"
 #include "report/gnuplot.hpp"
 #include "report/page.hpp"
+#include "report/pairs.hpp"
 #include "report/plot.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
@@ -122,6 +123,14 @@ void complete(FigureResult& result, const std::map<std::string, BatchRun>& runs,
     result.checks.push_back(followsScenario(*run.trace));
     if (!run.label.empty()) result.checks.back().what += ", " + run.label;
   }
+  if (figure.has_pairs) {
+    for (const FigureRun& run : figure.runs) {
+      const RecordedEfforts efforts = readEfforts(runs.at(run.scenario).recording);
+      const PairTable table = pairsOf(efforts);
+      result.tables.push_back(toHtml(table));
+      for (Check& check : checksOf(table)) add(std::move(check), run.label);
+    }
+  }
   for (const std::string& kind : figure.plots) {
     const std::string stem = figure.runs.front().scenario + "_" + kind;
     draw(out / stem, figure.title, kind, labelled);
@@ -139,7 +148,7 @@ void complete(FigureResult& result, const std::map<std::string, BatchRun>& runs,
 
 /// What goes wrong with one figure is told in its place, beside what was seen of it: the others are still to be seen.
 FigureResult resultOf(const Figure& figure, const std::map<std::string, BatchRun>& runs, const fs::path& out) {
-  FigureResult result{.figure = figure, .drawings = {}, .checks = {}, .failure = {}};
+  FigureResult result{.figure = figure, .drawings = {}, .tables = {}, .checks = {}, .failure = {}};
   try {
     complete(result, runs, out);
   } catch (const std::exception& error) {

@@ -19,6 +19,7 @@
 #include "runtime/command_line.hpp"
 #include "runtime/log.hpp"
 #include "runtime/run.hpp"
+#include "shadow_command.hpp"
 
 int main(int argc, char** argv) {
   return baton::runGuarded("baton", [&] {
@@ -35,7 +36,7 @@ int main(int argc, char** argv) {
     baton::addDemoCommand(app, exit_code);
     baton::addRunCommands(app, exit_code);
     baton::addBatonCommands(app, exit_code);
-  addControllerCommand(app, exit_code);
+    addControllerCommand(app, exit_code);
     addOperateCommands(app, exit_code);
     baton::addParamCommand(app);
     baton::addReplayCommand(app, exit_code);
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
     baton::addRerunCommand(app, exit_code);
     baton::addKillsCommand(app, exit_code);
     baton::addMetricsCommand(app);
+    baton::addShadowCommand(app);
     baton::addFiguresCommand(app, exit_code);
     baton::addModelCommand(app, exit_code);
     baton::addLawsCommand(app);

@@ -281,16 +281,17 @@ void LawRunner::publishStatus() {
   status.law(config_.law);
   status.uses_force(info_.uses_force);
   status.step(inputs_.lastDone().value_or(0));
+  const bool is_cold = !active_ && !service_.scenario().hot_standby;  // it has computed nothing at that step
   if (!inputs_.lastDone()) {
     status.state(msg::CONTROLLER_STARTING);
   } else if (active_) {
     status.state(failing_ ? msg::CONTROLLER_FAILED : msg::CONTROLLER_ACTIVE);
-  } else if (!service_.scenario().hot_standby) {
+  } else if (is_cold) {
     status.state(msg::CONTROLLER_COLD);
   } else {
     status.state(failing_ ? msg::CONTROLLER_FAILED : msg::CONTROLLER_STANDBY);
   }
-  if (inputs_.lastDone() && !failing_) {
+  if (inputs_.lastDone() && !failing_ && !is_cold) {
     assignSequence(effort_, status.effort());
     assignSequence(effort_ - input_.state.tau_applied, status.effort_gap());
   } else if (failing_) {

@@ -35,6 +35,43 @@ TEST(Report, MetricsOfARunAreThoseOfItsStates) {
   EXPECT_EQ(bench.baton({"metrics", (bench.folder() / "none.mcap").string()}).exit_code, 3);
 }
 
+TEST(Report, ShadowTellsWhatEachControllerWouldHaveDone) {
+  const Bench bench;
+  const std::string recording = (bench.folder() / "short.mcap").string(), out = (bench.folder() / "drawn").string();
+  ASSERT_EQ(bench.baton({"run", bench.write("short.yaml", shortContact()), "--out", recording}).exit_code, 0);
+  const nlohmann::json shadow = bench.batonJson({"shadow", recording, "--out", out, "--json"});
+  EXPECT_EQ(shadow.at("steps"), kShortSteps);
+  EXPECT_EQ(shadow.at("standby"), "hot");
+  EXPECT_EQ(shadow.at("cut"), "");
+  ASSERT_EQ(shadow.at("controllers").size(), 4U);
+  double held = 0.0;
+  for (const auto& controller : shadow.at("controllers")) {
+    held += controller.at("held").get<double>();
+    ASSERT_EQ(controller.at("joints").size(), 3U);
+    EXPECT_GT(controller.at("joints").at(0).at("largest"), 0.0) << controller;
+  }
+  EXPECT_DOUBLE_EQ(held, 1.0);
+  EXPECT_DOUBLE_EQ(shadow.at("controllers").at(0).at("held"), 0.001 * kFirstSwap);
+  EXPECT_NE(readFile(fs::path(out) / "short_shadow.svg").find("</svg>"), std::string::npos);
+
+  // One that was cut off is read as far as it goes, and says so.
+  fs::resize_file(recording, fs::file_size(recording) / 2);
+  const nlohmann::json cut = bench.batonJson({"shadow", recording, "--json"});
+  EXPECT_LT(cut.at("steps"), kShortSteps);
+  EXPECT_NE(cut.at("cut"), "");
+}
+
+TEST(Report, ShadowSaysWhatAColdStandbyLeavesOut) {
+  const Bench bench;
+  const std::string recording = (bench.folder() / "cold.mcap").string();
+  ASSERT_EQ(
+      bench.baton({"run", bench.write("cold.yaml", shortContact("standby: cold\n")), "--out", recording}).exit_code, 0);
+  const Finished text = bench.baton({"shadow", recording});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_NE(text.out.find("standby: cold"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("pd (joint_pd): held 0.0 %, without effort 100.0 %"), std::string::npos) << text.out;
+}
+
 TEST(Report, AFigureIsRunDrawnAndHeldAgainstTheory) {
   const Bench bench;
   const std::string out = (bench.folder() / "figures").string();

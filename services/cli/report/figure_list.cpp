@@ -41,6 +41,12 @@ ChartRequest readChart(const YamlNode& node, std::size_t runs) {
           .run = static_cast<int>(chart.integerOr("run", 0, static_cast<std::int64_t>(runs) - 1, 0))};
 }
 
+void readChecks(const YamlMap& map, Figure& figure) {
+  for (const YamlNode& check : map["checks"].list(1, kMaxEntries)) {
+    figure.checks.push_back(readCheck(check, figure.runs.size()));
+  }
+}
+
 /// What figures and studies have in common.
 Figure readCommon(const YamlMap& map) {
   Figure figure;
@@ -48,9 +54,6 @@ Figure readCommon(const YamlMap& map) {
   figure.theory = map["theory"].text(kMaxText);
   figure.finding = map["finding"].text(kMaxText);
   for (const YamlNode& run : map["runs"].list(1, 8)) figure.runs.push_back(readRun(run));
-  for (const YamlNode& check : map["checks"].list(1, kMaxEntries)) {
-    figure.checks.push_back(readCheck(check, figure.runs.size()));
-  }
   return figure;
 }
 
@@ -58,6 +61,7 @@ Figure readFigure(const YamlNode& node) {
   const YamlMap map =
       node.map({"figure", "title", "claim", "theory", "finding", "claim_holds", "runs", "plots", "checks"});
   Figure figure = readCommon(map);
+  readChecks(map, figure);
   figure.number = map["figure"].text();
   figure.claim = map["claim"].text(kMaxText);
   figure.verdict = map["claim_holds"].oneOf<ClaimVerdict>({{"true", ClaimVerdict::kHolds},
@@ -71,13 +75,18 @@ Figure readFigure(const YamlNode& node) {
 
 Figure readStudy(const YamlNode& node) {
   const YamlMap map =
-      node.map({"study", "title", "question", "theory", "finding", "folder", "runs", "charts", "checks"});
+      node.map({"study", "title", "question", "theory", "finding", "folder", "runs", "charts", "checks", "table"});
   Figure figure = readCommon(map);
   figure.is_study = true;
   figure.number = map["study"].text();
   figure.claim = map["question"].text(kMaxText);
   figure.verdict = ClaimVerdict::kNone;
   figure.folder = map["folder"].name();
+  if (const auto table = map.find("table")) {  // brings its own checks
+    figure.has_pairs = table->oneOf<bool>({{"pairs", true}});
+    return figure;
+  }
+  readChecks(map, figure);
   for (const YamlNode& chart : map["charts"].list(1, 8)) figure.charts.push_back(readChart(chart, figure.runs.size()));
   return figure;
 }

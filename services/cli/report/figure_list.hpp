@@ -23,7 +23,8 @@ struct FigureRun {
   std::string label;     // in legends
 };
 
-/// A figure of the report, or one of a study of ours, which has a question instead of a claim and may have charts.
+/// A figure of the report, or one of a study of ours, which has a question instead of a claim and may have charts
+/// or tables.
 struct Figure {
   bool is_study = false;
   std::string number;  // as the report numbers it: "30, 31, 32"; a study's name and part: "co-simulation, error"
@@ -36,6 +37,7 @@ struct Figure {
   std::vector<FigureRun> runs;
   std::vector<std::string> plots;
   std::vector<ChartRequest> charts;
+  bool has_pairs = false;  // each run is shown as a table of its handovers, law by law
   std::vector<CheckRequest> checks;
 };
 

@@ -46,7 +46,7 @@ std::string quoted(const std::string& text) {
 
 void drawScript(const fs::path& stem, const PictureSize& size, const std::string& data, const std::string& commands) {
   std::ofstream script(stem.string() + ".gp", std::ios::binary);
-  script << "# Drawn by baton figures; run gnuplot on this file to draw it again.\nset encoding utf8\n" << data;
+  script << "# Drawn by baton; run gnuplot on this file to draw it again.\nset encoding utf8\n" << data;
   const std::string name = stem.filename().string();
   for (const auto& [terminal, extension] :
        {std::pair{"svg enhanced background 'white' font 'Helvetica,12'", "svg"},

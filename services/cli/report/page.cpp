@@ -7,25 +7,12 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "html.hpp"
 #include "run_settings.hpp"
 #include "runtime/paths.hpp"
 
 namespace baton {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
-    }
-  }
-  return result;
-}
 
 constexpr const char* kHead = R"(<!doctype html>
 <html lang="en">
@@ -41,6 +28,7 @@ constexpr const char* kHead = R"(<!doctype html>
   dl { display: grid; grid-template-columns: 9rem 1fr; gap: 0.2rem 0.8rem; margin: 0.4rem 0; }
   dt { color: #666; } dd { margin: 0; }
   img { max-width: 100%; height: auto; }
+  .wide { overflow-x: auto; } .wide th { font-size: 0.8rem; } td.pair { text-align: center; padding: 0.15rem 0.4rem; }
   .holds, .agrees { color: #1d7a3c; } .partly { color: #9a6a00; } .wrong, .differs { color: #b3261e; }
   .tag { font-weight: 600; white-space: nowrap; }
   @media (prefers-color-scheme: dark) {
@@ -71,9 +59,9 @@ constexpr const char* kSymbols =
 
 constexpr const char* kStudiesHead =
     "<h2 id='studies'>Beyond the report</h2>\n"
-    "<p>Questions of our own. Each starts from recordings of the distributed system, like the figures above; its "
-    "charts "
-    "are computed by running the same scenario again in one process, many times over, with a number varied.</p>\n";
+    "<p>Questions of our own. Each starts from recordings of the distributed system, like the figures above; charts "
+    "are "
+    "computed by running the same scenario again in one process, many times over, with a number varied.</p>\n";
 
 const char* className(ClaimVerdict verdict) {
   switch (verdict) {
@@ -156,6 +144,7 @@ void writeFigure(std::ofstream& page, const FigureResult& result) {
   page << "<p>" << agreement(result) << "</p>\n";
   if (!result.failure.empty()) page << fmt::format("<pre>{}</pre>\n", escaped(result.failure));
   writeChecks(page, result.checks);
+  for (const std::string& table : result.tables) page << table;
   for (const std::string& drawing : result.drawings) {
     page << fmt::format("<p><a href='{0}.png'><img src='{0}.svg' alt='{1}' loading=lazy></a></p>\n", escaped(drawing),
                         escaped(figure.title));

@@ -13,6 +13,7 @@ namespace baton {
 struct FigureResult {
   Figure figure;
   std::vector<std::string> drawings;  // stems of .svg and .png beside the page
+  std::vector<std::string> tables;    // HTML
   std::vector<Check> checks;
   std::string failure;  // why something could not be run, measured or drawn; empty when everything could
 

@@ -20,19 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr Eigen::Index kMaxPoints = 1500;  // of a curve: more than a drawing has pixels
 
-struct Curve {
-  std::string label;
-  const Trace* trace = nullptr;
-  Eigen::RowVectorXd y;
-  std::size_t colour = 0;
-  bool is_desired = false;
-};
-
-struct Panel {
-  std::string y_label;
-  std::vector<Curve> curves;
-};
-
 std::string named(const std::string& run, const std::string& what) { return run.empty() ? what : run + ", " + what; }
 
 /// One panel a label; `add(panel, row, run)` draws the curves of each run into it.
@@ -126,8 +113,8 @@ std::vector<Eigen::Index> drawnSteps(const Eigen::RowVectorXd& y) {
     Eigen::Index low = from;
     Eigen::Index high = from;
     for (Eigen::Index k = from; k < to; ++k) {
-      if (y(k) < y(low)) low = k;
-      if (y(k) > y(high)) high = k;
+      if (std::isnan(y(low)) || y(k) < y(low)) low = k;
+      if (std::isnan(y(high)) || y(k) > y(high)) high = k;
     }
     drawn.push_back(std::min(low, high));
     drawn.push_back(std::max(low, high));
@@ -147,20 +134,29 @@ std::optional<double> firstContact(const Trace& trace) {
 
 constexpr const char* kDesiredColour = "#555555";
 
+/// Where the colours begin again, the curves are dashed: gnuplot's dash types from 3 on.
+std::size_t dashesOf(const Curve& curve) {
+  const std::size_t round = curve.colour / std::size(kCurveColours);
+  return round == 0 ? 1 : 2 + round;
+}
+
 void writeMarks(std::ostream& script, const std::vector<LabelledRun>& runs) {
   int tag = 1;
   const auto mark = [&](double time_s, const std::string& text, const char* colour) {
     script << fmt::format("set arrow {} from {},graph 0 to {},graph 1 nohead lc rgb '{}' dt 3\n", tag, time_s, time_s,
                           colour);
-    script << fmt::format(
-        "set label {} {} at {},graph 0.04 rotate left offset -0.4,0 tc rgb '{}' font ',9' noenhanced\n", tag,
-        quoted(text), time_s, colour);
+    if (!text.empty()) {
+      script << fmt::format(
+          "set label {} {} at {},graph 0.04 rotate left offset -0.4,0 tc rgb '{}' font ',9' noenhanced\n", tag,
+          quoted(text), time_s, colour);
+    }
     ++tag;
   };
+  constexpr std::size_t kMostNames = 20;  // more could not be read
   for (const LabelledRun& run : runs) {
     for (const msg::SwapOutcome& swap : run.trace->swaps) {
       mark(static_cast<double>(swap.at_step()) * run.trace->scenario.stepSeconds(),
-           std::string("to ") + swap.incoming().c_str(), "#777777");
+           run.trace->swaps.size() > kMostNames ? "" : std::string("to ") + swap.incoming().c_str(), "#777777");
     }
   }
   std::map<double, std::string> touches;  // runs that touch at the same time share a mark
@@ -214,7 +210,7 @@ std::string dataOf(const std::vector<Panel>& all) {
 std::string commandsFor(const std::string& title, const std::vector<Panel>& all, const std::vector<LabelledRun>& runs) {
   std::ostringstream commands;
   commands << fmt::format("set multiplot layout {},1 title {} noenhanced\n", all.size(), quoted(title));
-  commands << "set grid lc rgb '#dddddd'\nset key outside right top samplen 2\nset lmargin 12\n";
+  commands << "set grid lc rgb '#dddddd'\nset key outside right top vertical maxrows 40 samplen 2\nset lmargin 12\n";
   writeMarks(commands, runs);
   for (std::size_t p = 0; p < all.size(); ++p) {
     commands << fmt::format("set ylabel {}\n", quoted(all[p].y_label)) << yRange(all[p]);
@@ -225,7 +221,7 @@ std::string commandsFor(const std::string& title, const std::vector<Panel>& all,
       const char* colour = curve.is_desired ? kDesiredColour : kCurveColours[curve.colour % std::size(kCurveColours)];
       commands << fmt::format("{}$data_{}_{} using 1:2 with lines lc rgb '{}' lw {} dt {} title {} noenhanced",
                               c == 0 ? "" : ", ", p, c, colour, curve.is_desired ? "1.2" : "1.6",
-                              curve.is_desired ? "2" : "1", quoted(curve.label));
+                              curve.is_desired ? 2 : dashesOf(curve), quoted(curve.label));
     }
     commands << '\n';
   }
@@ -243,8 +239,15 @@ const std::vector<std::string>& plotKinds() {
 
 void draw(const fs::path& stem, const std::string& title, const std::string& kind,
           const std::vector<LabelledRun>& runs) {
-  const std::vector<Panel> all = panels(kind, runs);
-  drawScript(stem, {860, 90 + 190 * all.size()}, dataOf(all), commandsFor(title, all, runs));
+  draw(stem, title, panels(kind, runs), runs);
+}
+
+void draw(const fs::path& stem, const std::string& title, const std::vector<Panel>& panels,
+          const std::vector<LabelledRun>& runs) {
+  std::size_t most = 0;  // curves of a panel, each with a line in its legend
+  for (const Panel& panel : panels) most = std::max(most, panel.curves.size());
+  drawScript(stem, {860, 90 + std::max<std::size_t>(190, 60 + 18 * most) * panels.size()}, dataOf(panels),
+             commandsFor(title, panels, runs));
 }
 
 }  // namespace baton

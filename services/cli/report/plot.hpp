@@ -15,12 +15,30 @@ struct LabelledRun {
   const Trace* trace = nullptr;
 };
 
+/// One quantity of a run over time.
+struct Curve {
+  std::string label;
+  const Trace* trace = nullptr;
+  Eigen::RowVectorXd y;     // a value a step; NaN: none
+  std::size_t colour = 0;   // the first, second, ...
+  bool is_desired = false;  // grey and dashed
+};
+
+struct Panel {
+  std::string y_label;
+  std::vector<Curve> curves;
+};
+
 /// What can be drawn: joints, joint_errors, tip, tip_errors, angles, efforts, force, force_reference.
 [[nodiscard]] const std::vector<std::string>& plotKinds();
 
 /// Writes `stem`.gp, a script with its data, and lets gnuplot make `stem`.svg and `stem`.png of it; all runs go into
 /// the same panels. Throws UsageError for an unknown kind, UnavailableError when gnuplot is missing or fails.
 void draw(const std::filesystem::path& stem, const std::string& title, const std::string& kind,
+          const std::vector<LabelledRun>& runs);
+
+/// The same of curves that were made elsewhere; handovers and contacts of `runs` are marked.
+void draw(const std::filesystem::path& stem, const std::string& title, const std::vector<Panel>& panels,
           const std::vector<LabelledRun>& runs);
 
 }  // namespace baton

@@ -1,0 +1,58 @@
+#include "shadow_command.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "report/shadow.hpp"
+#include "runtime/json.hpp"
+
+namespace baton {
+namespace {
+namespace fs = std::filesystem;
+
+struct ShadowRequest {
+  std::string file;
+  std::string out;
+  bool json = false;
+};
+
+void shadow(const ShadowRequest& request) {
+  const RecordedEfforts run = readEfforts(request.file);
+  if (!run.trace.is_complete)
+    std::fprintf(stderr, "baton: warning: %s is not certified complete\n", request.file.c_str());
+  const Shadow table = shadowOf(run);
+  const fs::path stem = fs::path(request.out) / (run.trace.scenario.name + "_shadow");
+  if (request.json) {
+    nlohmann::ordered_json json = toJson(table);
+    if (!request.out.empty()) json["drawing"] = stem.string() + ".svg";
+    std::puts(toText(json).c_str());
+  } else {
+    std::fputs(toText(table).c_str(), stdout);
+  }
+  if (request.out.empty()) return;
+  fs::create_directories(request.out);
+  draw(stem, run.trace.scenario.name + ": what each controller commanded, or would have", shadowPanels(run),
+       {{.label = "", .trace = &run.trace}});
+  if (!request.json) std::printf("%s.svg\n", stem.c_str());
+}
+
+}  // namespace
+
+void addShadowCommand(CLI::App& app) {
+  const auto request = std::make_shared<ShadowRequest>();
+  CLI::App* command =
+      app.add_subcommand("shadow", "what each controller of a recorded run would have done, beside what was applied");
+  command->footer(
+      "Of the steps in which a controller stood by: its effort minus what the joint felt over the same step, as rms "
+      "and\n"
+      "largest value; and as jump, the largest change against the step before that a handover without any help would\n"
+      "have made. A dash: it did not compute while it stood by.");
+  command->add_option("file", request->file, "recording (MCAP)")->required();
+  command->add_option("--out", request->out, "folder for a drawing of all efforts over time, SVG and PNG");
+  command->add_flag("--json", request->json, "print JSON");
+  command->callback([=] { shadow(*request); });
+}
+
+}  // namespace baton
