@@ -97,8 +97,11 @@ TEST(Rerun, RepeatsTheLastTakeOfARunThatWasReset) {
 TEST(Rerun, RepeatsAFailoverAndTheReturnOfANewProcess) {
   const Bench bench;
   // An adaptive law: what it learnt is gone with its process, and the bytes tell.
-  const std::string scenario =
-      endless({{"controllers.3.law", "adaptive"}, {"active", "pd"}, {"baton", "{fallback: [impedance]}"}});
+  const std::string scenario = endless({{"step_s", "0.00025"},
+                                        {"controllers.3.law", "adaptive"},
+                                        {"controllers.3.parameters", "{lambda: 10, kd: [10, 10, 4], k: 0.1}"},
+                                        {"active", "pd"},
+                                        {"baton", "{fallback: [impedance]}"}});
   const LiveRun run(bench, scenario, {"--restarts", "1"});
   run.waitForStep(200);
   const int before = run.pidOf("pd");
@@ -179,9 +182,8 @@ TEST(Rerun, PlannedFailuresHappenAtTheirSteps) {
   EXPECT_EQ(holders[kShortSteps], "impedance") << "one that is lost does not get the baton";
   EXPECT_EQ(result.at("exit_code"), 1) << "the planned handover to force was refused";
   for (const auto& swap : result.at("swaps")) {
-    if (swap.at("incoming") == "force") {
-      EXPECT_NE(swap.at("reason").get<std::string>().find("has failed"), std::string::npos);
-    }
+    if (swap.at("incoming") != "force") continue;
+    EXPECT_NE(swap.at("reason").get<std::string>().find("has failed"), std::string::npos);
   }
 
   const auto [again, same] = recorded(failures, "b.mcap");
