@@ -30,7 +30,7 @@ MonolithicRun::MonolithicRun(const Scenario& scenario)
     : scenario_(checked(scenario)),
       controller_(scenario_.controller(scenario_.active)),
       law_info_(findLaw(controller_.law)),
-      law_(law_info_.make(scenario_.robot, controller_.parameters)),
+      schedule_(law_info_, scenario_.robot, controller_.parameters, scenario_.changesOf(controller_.name)),
       arm_(scenario_.robot, scenario_.armConfig()),
       reference_answer_(scenario_),
       effort_(JointVector::Zero(scenario_.robot.size())),
@@ -41,7 +41,6 @@ MonolithicRun::MonolithicRun(const Scenario& scenario)
   prepare(state_message_);
   prepare(reference_message_);
   prepare(command_message_);
-  law_->reset();
 }
 
 bool MonolithicRun::step() {
@@ -68,7 +67,8 @@ bool MonolithicRun::step() {
     if (law_info_.uses_force) input_.contact = contact_;
   }
 
-  if (const LawStatus status = law_->step(input_, effort_); status != LawStatus::kOk) {
+  schedule_.advance(step_);
+  if (const LawStatus status = schedule_.law().step(input_, effort_); status != LawStatus::kOk) {
     return fail(controller_.name + " has no effort to give: " + toString(status));
   }
   const std::size_t used = law_info_.uses_force ? 3 : 2;

@@ -12,6 +12,7 @@
 
 #include "control/arm.hpp"
 #include "control/law.hpp"
+#include "control/parameter_schedule.hpp"
 #include "dds/codec.hpp"
 #include "dds/hash.hpp"
 #include "messages/loop.hpp"
@@ -55,7 +56,7 @@ class MonolithicRun {
   const Scenario scenario_;
   const ControllerConfig& controller_;
   const LawInfo& law_info_;
-  const std::unique_ptr<Law> law_;
+  ParameterSchedule schedule_;
   Arm arm_;
   ReferenceAnswer reference_answer_;
   std::optional<ContactAnswer> contact_answer_;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "control/arm.hpp"
+#include "control/parameter_schedule.hpp"
 #include "control/parameters.hpp"
 #include "environment/plane.hpp"
 #include "robot/model.hpp"
@@ -52,6 +53,11 @@ struct PlannedFailure {
 struct PlannedStop {
   std::uint64_t decided_at_step = 0;
   std::uint64_t at_step = 0;
+};
+
+struct PlannedChange {
+  std::string controller;
+  ParameterChange change;  // values checked, and as many as the parameter has
 };
 
 inline constexpr double kMaxBlend_s = 10.0;
@@ -102,6 +108,7 @@ struct Scenario {
   std::vector<PlannedSwap> swaps;        // by step
   std::vector<PlannedFailure> failures;  // by step; those of one controller follow each other
   std::vector<PlannedStop> stops;        // by the step they are decided at
+  std::vector<PlannedChange> changes;    // by step
   BatonConfig baton;
   RecordingConfig recording;
   std::vector<Fault> faults;          // that strike on purpose
@@ -121,6 +128,8 @@ struct Scenario {
   [[nodiscard]] ArmConfig armConfig() const;
   /// The controller called that; throws UsageError, with the nearest name, when there is none.
   [[nodiscard]] const ControllerConfig& controller(const std::string& controller_name) const;
+  /// What is planned for its parameters.
+  [[nodiscard]] std::vector<ParameterChange> changesOf(const std::string& controller_name) const;
 };
 
 /// Reads and checks a scenario file and the robot file it names. Throws UsageError with file, line, what was expected

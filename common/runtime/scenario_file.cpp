@@ -120,29 +120,6 @@ Coupling readCoupling(const YamlNode& node) {
 
 // --- controllers
 
-ParameterValue readParameter(const YamlNode& node, bool is_choice) {
-  if (is_choice) return node.text();
-  if (!node.isList()) return std::vector<double>{node.number()};
-  std::vector<double> values;
-  for (const YamlNode& item : node.list(0, 64)) values.push_back(item.number());
-  return values;
-}
-
-/// Each parameter is checked by itself first, so that a message can name its line.
-ParameterValues readParameters(const YamlNode& node, const LawInfo& law, int n) {
-  ParameterValues given;
-  for (const auto& [name, value] : node.entries()) {
-    const auto is_named = [&name = name](const ParameterSpec& spec) { return spec.name == name; };
-    const auto spec = std::find_if(law.parameters.begin(), law.parameters.end(), is_named);
-    const bool is_known = spec != law.parameters.end();
-    const ParameterValue read =
-        is_known ? readParameter(value, spec->size == ParameterSize::kChoice) : ParameterValue();
-    at(value, [&, &key = name] { (void)completeParameters(law.parameters, {{key, read}}, n); });
-    given[name] = read;
-  }
-  return completeParameters(law.parameters, given, n);
-}
-
 /// A law says for itself whether the reference has the part that it follows: its first step tells, before a run does.
 bool missesReference(Law& law, const Scenario& scenario) {
   LawInput input;
@@ -226,7 +203,7 @@ Scenario readScenario(const std::string& file, const std::string& text,
                                        "duration_s",   "mode",        "rate",        "late",       "max_missed_steps",
                                        "effort_limit", "start",       "environment", "trajectory", "controllers",
                                        "active",       "standby",     "swaps",       "failures",   "stops",
-                                       "baton",        "recording",   "faults"});
+                                       "baton",        "recording",   "faults",      "changes"});
   Scenario scenario;
   scenario.file = file;
   scenario.text = text;
@@ -258,6 +235,7 @@ Scenario readScenario(const std::string& file, const std::string& text,
   readFailures(map, scenario);
   readSwaps(map, scenario);
   readStops(map, scenario);
+  readChanges(map, scenario);
   scenario.recording = readRecording(map, scenario);
   readFaults(map, scenario);
   return scenario;
@@ -286,6 +264,14 @@ const ControllerConfig& Scenario::controller(const std::string& controller_name)
     known.push_back(one.name);
   }
   throw UsageError(unknownName("controller", controller_name, known));
+}
+
+std::vector<ParameterChange> Scenario::changesOf(const std::string& controller_name) const {
+  std::vector<ParameterChange> theirs;
+  for (const PlannedChange& planned : changes) {
+    if (planned.controller == controller_name) theirs.push_back(planned.change);
+  }
+  return theirs;
 }
 
 Scenario loadScenario(const std::string& path, const std::string& robot_path) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "control/law.hpp"
 #include "environment/plane.hpp"
 #include "robot/model.hpp"
 #include "runtime/scenario.hpp"
@@ -50,6 +51,11 @@ void readSwaps(const YamlMap& map, Scenario& scenario);
 void readStops(const YamlMap& map, Scenario& scenario);
 /// The faults that are wanted, likewise.
 void readFaults(const YamlMap& map, Scenario& scenario);
+
+/// Some of a law's parameters, each of which may have that value in an arm of n joints.
+[[nodiscard]] ParameterValues readParameters(const YamlNode& node, const LawInfo& law, int n);
+/// Changes of parameters that are planned: from the scenario's own map, as readSwaps() does.
+void readChanges(const YamlMap& map, Scenario& scenario);
 
 /// The walls of an environment.
 [[nodiscard]] std::vector<PlaneSpec> readWalls(const YamlNode& node);

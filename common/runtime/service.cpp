@@ -47,6 +47,7 @@ Service::Service(ServiceOptions options, Scenario scenario)
   if (options_.role != kPlantName) {
     input(dds::topics::kSimStatus, {kPlantName}, [this](const msg::SimStatus& status, const dds::RawSample& sample) {
       if (participant_.isSecondCopy(sample.writer)) return;
+      take_ = std::max(take_, status.take());
       const bool finished = status.state() == msg::SIM_STATE_FINISHED;
       if (finished || status.state() == msg::SIM_STATE_ABORTED) runEnded(status.step(), finished);
     });
@@ -180,6 +181,7 @@ void Service::onRewindMessage(const msg::Rewind& rewind) {
   rewinding_.owed.reset();
   if (rewind.phase() == msg::REWIND_CANCEL) return;
   if (rewind.phase() == msg::REWIND_COMMIT) {
+    take_ = rewind.take();
     rewinding_.forget();
     last_done_.reset();
     step_ = 0;

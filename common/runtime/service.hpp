@@ -73,6 +73,8 @@ class Service {
   /// Takes part in resets. `is_quiet(step)`: everything of that step is here and answered, so nothing of the run so far
   /// can still arrive. `forget` goes back to the state from before the first step. Both are called under mutex().
   void onRewind(std::function<bool(std::uint64_t)> is_quiet, std::function<void()> forget);
+  /// Of the run: how often it had been reset, as far as is known here. From handlers.
+  [[nodiscard]] std::uint32_t take() const { return take_; }
   /// Something has arrived that is_quiet() may have waited for. From handlers.
   void considerRewind();
   /// This service takes no part in the steps: at the end of the run nothing more is waited for.
@@ -147,6 +149,7 @@ class Service {
   std::atomic<std::uint64_t> step_{0};
   std::vector<Fault> process_faults_;  // that the scenario wants on this process
   bool has_begun_ = false;             // at() was called: a process that was started again is spared
+  std::uint32_t take_ = 0;             // guarded by mutex_
   bool answers_steps_ = true;
   std::optional<std::uint64_t> last_done_;
   std::optional<std::uint64_t> end_step_;

@@ -36,9 +36,9 @@ int main(int argc, char** argv) {
     baton::addDemoCommand(app, exit_code);
     baton::addRunCommands(app, exit_code);
     baton::addBatonCommands(app, exit_code);
-    addControllerCommand(app, exit_code);
-    addOperateCommands(app, exit_code);
-    baton::addParamCommand(app);
+    baton::addControllerCommand(app, exit_code);
+    baton::addOperateCommands(app, exit_code);
+    baton::addParamCommand(app, exit_code);
     baton::addReplayCommand(app, exit_code);
     baton::addBagCommand(app, exit_code);
     baton::addBranchCommand(app, exit_code);

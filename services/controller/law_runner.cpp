@@ -1,7 +1,6 @@
 #include "law_runner.hpp"
 
 #include "base/error.hpp"
-#include "parameter_report.hpp"
 
 namespace baton {
 namespace {
@@ -24,21 +23,19 @@ LawRunner::LawRunner(Service& service)
       checkpoint_out_(service),
       config_(configOf(service)),
       info_(findLaw(config_.law)),
-      law_(info_.make(service.scenario().robot, config_.parameters)),
+      parameters_(service, config_, info_, checkpoint_out_.firstStep()),
       inputs_(info_.uses_force ? 3 : 2),
       effort_(JointVector::Zero(service.scenario().robot.size())),
       command_out_(service, dds::topics::kJointCommand, withRecorder({kPlantName}, service.scenario())),
       shadow_out_(service, dds::topics::kShadowCommand, withRecorder({}, service.scenario())),
       ack_out_(service.output(dds::topics::kSwapAck, withRecorder({kPlantName}, service.scenario()))),
       status_out_(service.output(dds::topics::kControllerStatus)) {
-  service.output(dds::topics::kParameterStatus).write(parameterReport(config_));
   input_.dt_s = service.scenario().stepSeconds();
   prepare(message_);
   ack_.effort().reserve(kMaxJoints);
   ack_.controller(config_.name);
   owed_.reserve(kMaxOwed);
   law_state_.resize(msg::MAX_CHECKPOINT);
-  law_->reset();
   for (const PlannedFailure& failure : service.scenario().failures) {
     const bool is_restart = failure.controller == config_.name && failure.restarted;
     // One from before a branch is behind the state that the branch starts from.
@@ -47,6 +44,7 @@ LawRunner::LawRunner(Service& service)
     }
   }
   checkpoint_out_.restore(*this);
+  parameters_.publish();
   service.input(dds::topics::kPlantState, {kPlantName},
                 [this](const msg::PlantState& message, const dds::RawSample& sample) { onState(message, sample); });
   service.input(dds::topics::kReference, {kTrajectoryName},
@@ -109,6 +107,7 @@ void LawRunner::compute(std::uint64_t step) {
   inputs_.done(step);
   service_.at(step);
   if (checkpoints_[slot]) checkpoint_out_.save(step, *this);
+  const bool has_news = parameters_.advance(step);
   restartAsPlanned(step);
   if (!holds && !last_command && !service_.scenario().hot_standby) {
     active_ = false;
@@ -122,13 +121,15 @@ void LawRunner::compute(std::uint64_t step) {
     active_ = holds;
     publish(step, holds || last_command);
   }
+  if (has_news) parameters_.publish();
   answerForecasts();
   service_.stepDone(step);
 }
 
 /// This process stands for one that had died and was started again: that one would remember nothing.
 void LawRunner::restartAsPlanned(std::uint64_t step) {
-  for (; next_restart_ < restarts_.size() && restarts_[next_restart_] <= step; ++next_restart_) law_->reset();
+  for (; next_restart_ < restarts_.size() && restarts_[next_restart_] <= step; ++next_restart_)
+    parameters_.law().reset();
 }
 
 bool LawRunner::isQuiet(std::uint64_t step) const {
@@ -137,7 +138,7 @@ bool LawRunner::isQuiet(std::uint64_t step) const {
 }
 
 void LawRunner::forget() {
-  law_->reset();
+  parameters_.rewind();
   inputs_ = StepInputs(info_.uses_force ? 3 : 2);
   active_ = failing_ = false;
   next_restart_ = 0;
@@ -154,7 +155,8 @@ void LawRunner::archive(StateArchive& state) {
   std::uint64_t whose = own;
   state(whose, active_);
   if (whose != own) return state.fail();
-  law_->archive(state);
+  parameters_.archive(state);
+  parameters_.law().archive(state);
 }
 
 void LawRunner::evaluate(std::uint64_t step, Start start) {
@@ -162,9 +164,10 @@ void LawRunner::evaluate(std::uint64_t step, Start start) {
   input_.state = states_[slot];
   input_.reference = references_[slot];
   input_.contact = contacts_[slot];
-  if (start == Start::kTakesOver) law_->handover(input_);
-  if (start == Start::kForgets) law_->reset();
-  last_status_ = law_->step(input_, effort_);
+  Law& law = parameters_.law();
+  if (start == Start::kTakesOver) law.handover(input_);
+  if (start == Start::kForgets) law.reset();
+  last_status_ = law.step(input_, effort_);
   if (last_status_ == LawStatus::kOk) {
     history_[slot] = effort_;
   } else {
@@ -246,19 +249,20 @@ void LawRunner::answer(const msg::SwapPlan& plan) {
 
 /// What the law would give at a step, without a trace.
 LawStatus LawRunner::tryOut(std::uint64_t step, Start start, JointVector& effort) {
+  Law& law = parameters_.law();
   StateArchive saved = StateArchive::into(law_state_);
-  law_->archive(saved);
+  law.archive(saved);
   const std::size_t slot = StepInputs::slot(step);
   LawInput input = input_;
   input.state = states_[slot];
   input.reference = references_[slot];
   input.contact = contacts_[slot];
-  if (start == Start::kForgets) law_->reset();
-  if (start == Start::kTakesOver) law_->handover(input);
+  if (start == Start::kForgets) law.reset();
+  if (start == Start::kTakesOver) law.handover(input);
   effort = effort_;
-  const LawStatus status = law_->step(input, effort);
+  const LawStatus status = law.step(input, effort);
   StateArchive back = StateArchive::from(std::span(law_state_).first(saved.size()));
-  law_->archive(back);
+  law.archive(back);
   return status;
 }
 

@@ -5,11 +5,11 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "control/law.hpp"
+#include "parameter_changes.hpp"
 #include "runtime/checkpoint.hpp"
 #include "runtime/loop_output.hpp"
 #include "runtime/service.hpp"
@@ -52,7 +52,7 @@ class LawRunner {
   Checkpoints checkpoint_out_;
   const ControllerConfig& config_;
   const LawInfo& info_;
-  std::unique_ptr<Law> law_;
+  ParameterChanges parameters_;  // and the law that is made with them
   StepInputs inputs_;
   Window<RobotState> states_;
   Window<bool> holds_{};        // whether PlantState named us

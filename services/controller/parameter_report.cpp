@@ -2,35 +2,26 @@
 
 #include "base/error.hpp"
 #include "control/law.hpp"
+#include "messages/parameters.hpp"
 
 namespace baton {
 namespace {
 
-/// A bounded string would cut what is too long without a word.
-template <class BoundedString>
-void assign(const std::string& text, const std::string& of, BoundedString& to) {
-  if (text.size() > BoundedString::max_size) {
-    throw UsageError(of + ": expected at most " + std::to_string(BoundedString::max_size) + " characters, found '" +
-                     text + "'");
-  }
-  to = text;
-}
-
 msg::Parameter toMessage(const ParameterSpec& spec, const ParameterValue& value) {
   msg::Parameter message;
-  assign(spec.name, "parameter name", message.name());
-  assign(spec.unit, "unit of parameter " + spec.name, message.unit());
-  assign(spec.doc, "doc of parameter " + spec.name, message.doc());
+  assignText(spec.name, "parameter name", message.name());
+  assignText(spec.unit, "unit of parameter " + spec.name, message.unit());
+  assignText(spec.doc, "doc of parameter " + spec.name, message.doc());
   message.minimum(spec.minimum);
   message.maximum(spec.maximum);
   if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
     message.numbers() = *numbers;
   } else {
-    assign(std::get<std::string>(value), "value of parameter " + spec.name, message.word());
+    assignText(std::get<std::string>(value), "value of parameter " + spec.name, message.word());
   }
   if (spec.choices.size() > msg::MAX_WORDS) throw UsageError("parameter " + spec.name + " has too many choices");
   for (const std::string& word : spec.choices) {
-    assign(word, "choice of parameter " + spec.name, message.choices().emplace_back());
+    assignText(word, "choice of parameter " + spec.name, message.choices().emplace_back());
   }
   return message;
 }
@@ -47,6 +38,17 @@ msg::ParameterStatus parameterReport(const ControllerConfig& config) {
     report.parameters().push_back(toMessage(spec, config.parameters.at(spec.name)));
   }
   return report;
+}
+
+void fill(const LawInfo& law, const ParameterValues& values, msg::ParameterStatus& report) {
+  for (std::size_t i = 0; i < law.parameters.size(); ++i) {
+    const ParameterValue& value = values.at(law.parameters[i].name);
+    if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
+      report.parameters()[i].numbers() = *numbers;
+    } else {
+      report.parameters()[i].word() = std::get<std::string>(value);
+    }
+  }
 }
 
 }  // namespace baton

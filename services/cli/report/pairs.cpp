@@ -85,7 +85,7 @@ double PairHandover::ratio() const {
 
 double PairHandover::excess() const {
   const Eigen::VectorXd excess = change - own;
-  return std::max(0.0, excess.maxCoeff<Eigen::PropagateNaN>());
+  return std::max(excess.maxCoeff<Eigen::PropagateNaN>(), 0.0);  // in this order a NaN stays one
 }
 
 PairTable pairsOf(const RecordedEfforts& run) {
