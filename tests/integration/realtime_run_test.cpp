@@ -60,7 +60,9 @@ TEST(RealtimeRun, BrakesWhenItsControllerIsSilent) {
   kill(holder, SIGCONT);
   const nlohmann::json result = bench.batonJson({"down", "--json"});
   EXPECT_GE(result.at("missed_steps"), 5) << result;
-  EXPECT_EQ(result.at("timing").at("command_age_steps").at("max"), 5) << result;  // then the brake's own torque
+  // No torque is kept for longer, then the brake has its own. A step whose contact is late makes the command no older.
+  EXPECT_GE(result.at("timing").at("command_age_steps").at("max"), 1) << result;
+  EXPECT_LE(result.at("timing").at("command_age_steps").at("max"), 5) << result;
 }
 
 }  // namespace
