@@ -89,10 +89,10 @@ INSTANTIATE_TEST_SUITE_P(
                     "max_command"},
         HolderFault{"killed", "faults: [{do: kill, service: impedance, at_s: 0.2}]\n", "signal 9"},
         HolderFault{"stopped_for_good",
-                    "late: {policy: fallback, after_s: 0.5}\nfaults: [{do: stop, service: impedance, at_s: 0.2}]\n",
+                    "late: {policy: fallback, after_s: 3}\nfaults: [{do: stop, service: impedance, at_s: 0.2}]\n",
                     "step"},
         HolderFault{"dropped",
-                    "late: {policy: fallback, after_s: 0.5}\n"
+                    "late: {policy: fallback, after_s: 3}\n"
                     "faults: [{do: drop, service: impedance, topic: joint_command, at_s: 0.2}]\n",
                     "step"}),
     [](const auto& fault) { return fault.param.name; });

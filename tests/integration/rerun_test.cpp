@@ -126,7 +126,7 @@ TEST(Rerun, RepeatsAFailoverAndTheReturnOfANewProcess) {
 
 TEST(Rerun, RepeatsWhatThePlantDecidedAboutOneThatWasSilent) {
   const Bench bench;
-  const LiveRun run(bench, endless({{"late", "{policy: fallback, after_s: 0.2}"}, {"baton", "{fallback: [pd]}"}}));
+  const LiveRun run(bench, endless({{"late", "{policy: fallback, after_s: 3}"}, {"baton", "{fallback: [pd]}"}}));
   run.waitForStep(100);
   const int pid = run.pidOf("tracking");
   ASSERT_EQ(kill(pid, SIGSTOP), 0);
