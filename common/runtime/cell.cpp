@@ -126,7 +126,8 @@ void keepExperiment(const RunInfo& info, const Scenario& scenario) {
     stream.close();
     std::error_code error;
     if (stream) fs::rename(draft, file, error);
-    if (!stream || error) throw UnavailableError("cannot write " + file + ": expected space and the right to write there");
+    if (!stream || error)
+      throw UnavailableError("cannot write " + file + ": expected space and the right to write there");
   }
 }
 

@@ -58,7 +58,7 @@ class Supervisor {
 
   Service& service_;
   Deployment deployment_;
-  Scenario scenario_;  // with the controllers that were started since
+  Scenario scenario_;                         // with the controllers that were started since
   std::map<std::string, std::string> roles_;  // of services, by name
   std::map<std::string, int> restarts_left_;
   std::set<std::string, std::less<>> asked_to_end_;
