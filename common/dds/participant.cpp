@@ -15,6 +15,7 @@
 #include <tuple>
 
 #include "base/error.hpp"
+#include "base/splitmix64.hpp"
 #include "dds/participant_impl.hpp"
 #include "dds/raw_type.hpp"
 #include "dds/thread_id.hpp"
@@ -70,10 +71,7 @@ std::shared_ptr<Transport> loopbackUdp() {
 /// Scatters the losses over the datagrams of this process; the count goes on whatever is sent again.
 bool isLost(std::uint64_t one_in) {
   static std::atomic<std::uint64_t> count{0};
-  std::uint64_t x = ++count * 0x9E37'79B9'7F4A'7C15u;  // splitmix64
-  x = (x ^ (x >> 30)) * 0xBF58'476D'1CE4'E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D0'49BB'1331'11EBu;
-  return (x ^ (x >> 31)) % one_in == 0;
+  return splitmix(++count * kSplitmixStep) % one_in == 0;
 }
 
 GuidPrefix toPrefix(const rtps::GUID_t& guid) { return prefixOf(toGuid(guid)); }
@@ -174,6 +172,7 @@ void Participant::Impl::on_participant_discovery(DomainParticipant*, rtps::Parti
 }
 
 void Participant::Impl::on_publisher_discovery(DomainParticipant*, rtps::WriterDiscoveryInfo&& info) {
+  const std::lock_guard watch_lock(watch_mutex);
   if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
     const std::lock_guard lock(mutex);
     writers.erase(toGuid(info.info.guid()));
@@ -194,13 +193,11 @@ void Participant::Impl::on_publisher_discovery(DomainParticipant*, rtps::WriterD
                     "\ndurability: " + (writer.transient_local ? "transient_local" : "volatile") +
                     "\nownership: " + (writer.exclusive_ownership ? "exclusive" : "shared") +
                     "\nkeyed: " + (writer.keyed ? "true" : "false") + "\n";
-  WriterCallback callback;
   {
     const std::lock_guard lock(mutex);
     writers[writer.guid] = writer;
-    callback = on_writer;
   }
-  if (callback) callback(writer);
+  if (on_writer) on_writer(writer);
 }
 
 Topic* Participant::Impl::topic(const std::string& name, const std::string& type, std::uint32_t max_payload,
@@ -254,14 +251,16 @@ bool isElder(const Peer& a, const Peer& b) {
   return std::tie(a.started_ns, a.prefix) < std::tie(b.started_ns, b.prefix);
 }
 
-void Participant::watchWriters(const WriterCallback& callback) {
+void Participant::watchWriters(WriterCallback callback) {
+  const std::lock_guard watch_lock(impl_->watch_mutex);
   std::map<Guid, DiscoveredWriter> known;
   {
     const std::lock_guard lock(impl_->mutex);
     known = impl_->writers;
-    impl_->on_writer = callback;
   }
-  for (const auto& [guid, writer] : known) callback(writer);
+  impl_->on_writer = std::move(callback);
+  if (!impl_->on_writer) return;
+  for (const auto& [guid, writer] : known) impl_->on_writer(writer);
 }
 
 void redirectDdsLog(std::function<void(int level, const std::string& text)> sink) {

@@ -69,8 +69,9 @@ class Participant {
   /// This process as others see it.
   [[nodiscard]] const Peer& self() const;
 
-  /// Calls back for every writer of somebody else in the domain, those known already first.
-  void watchWriters(const WriterCallback& callback);
+  /// Calls back for every writer of somebody else in the domain, those known already first, until another callback or
+  /// an empty one takes its place: no call is under way any more when this returns. Not to be called from a callback.
+  void watchWriters(WriterCallback callback);
 
   struct Impl;  // Fast DDS entities, for the other files of this folder
   [[nodiscard]] Impl& impl() const { return *impl_; }

@@ -35,6 +35,7 @@ struct Participant::Impl final : eprosima::fastdds::dds::DomainParticipantListen
   mutable std::mutex mutex;  // guards what follows; discovery runs on a DDS thread
   std::map<GuidPrefix, Peer> peers;
   std::map<Guid, DiscoveredWriter> writers;
+  std::mutex watch_mutex;  // held while on_writer is called, so that it can be taken away; never taken after `mutex`
   WriterCallback on_writer;
 };
 

@@ -77,8 +77,10 @@ Recorder::Recorder(Service& service)
 }
 
 Recorder::~Recorder() {
+  service_.participant().watchWriters({});  // those of other cells come and go while this one ends
   queue_.close();
   if (file_thread_.joinable()) file_thread_.join();
+  topics_.clear();  // their callbacks use what is declared after them
 }
 
 ExitCode Recorder::run() {

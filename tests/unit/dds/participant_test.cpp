@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <future>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -47,6 +51,36 @@ class Watch {
   mutable std::mutex mutex_;
   std::map<Guid, DiscoveredWriter> found_;
 };
+
+TEST(ParticipantTest, AWatchThatIsTakenAwayIsNotCalledAnyMore) {
+  Participant watcher(memberOptions("watcher", "cell"));
+  std::promise<void> entered, let_go;
+  std::atomic<int> calls{0}, returns{0};
+  watcher.watchWriters([&](const DiscoveredWriter&) {
+    if (++calls == 1) {
+      entered.set_value();
+      let_go.get_future().wait();
+    }
+    ++returns;
+  });
+  Participant other(memberOptions("other", "cell"));
+  const RawWriter first(other, {.topic = "first", .type = "Bytes"});
+  ASSERT_EQ(entered.get_future().wait_for(std::chrono::minutes(1)), std::future_status::ready);
+  auto taken_away = std::async(std::launch::async, [&] {
+    watcher.watchWriters({});
+    return std::pair{calls.load(), returns.load()};
+  });
+  let_go.set_value();
+  const auto [called, returned] = taken_away.get();
+  EXPECT_EQ(called, returned) << "a call was still under way";
+
+  Signal signal;
+  Watch later(signal, "cell");
+  const RawWriter second(other, {.topic = "second", .type = "Bytes"});
+  later.listenTo(watcher);
+  ASSERT_TRUE(signal.waitUntil([&] { return later.found().count(second.guid()) == 1; }));
+  EXPECT_EQ(calls, called);
+}
 
 TEST(ParticipantTest, DomainsOutsideTheRangeAreRefused) {
   for (const int domain : {-1, 233, 1'000'000}) {
