@@ -69,7 +69,10 @@ struct LawInfo {
 /// All laws, sorted by name.
 [[nodiscard]] const std::vector<LawInfo>& allLaws();
 
-/// The law called `name`; throws UsageError listing the known names.
+/// The law called `name`, nullptr when there is none.
+[[nodiscard]] const LawInfo* lawCalled(std::string_view name);
+
+/// The same; throws UsageError listing the known names.
 [[nodiscard]] const LawInfo& findLaw(const std::string& name);
 
 /// The law called `name` for this robot, defaults filled in; throws UsageError naming the law and what is wrong.

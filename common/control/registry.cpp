@@ -38,12 +38,16 @@ const std::vector<LawInfo>& allLaws() {
   return all;
 }
 
+const LawInfo* lawCalled(std::string_view name) {
+  const std::vector<LawInfo>& laws = allLaws();
+  const auto found = std::find_if(laws.begin(), laws.end(), [&](const LawInfo& law) { return law.name == name; });
+  return found == laws.end() ? nullptr : &*found;
+}
+
 const LawInfo& findLaw(const std::string& name) {
+  if (const LawInfo* law = lawCalled(name)) return *law;
   std::vector<std::string> known;
-  for (const LawInfo& law : allLaws()) {
-    if (law.name == name) return law;
-    known.push_back(law.name);
-  }
+  for (const LawInfo& law : allLaws()) known.push_back(law.name);
   throw UsageError(unknownName("law", name, known));
 }
 

@@ -38,24 +38,24 @@ ParameterValues fromMessages(const std::vector<msg::ParameterValue>& messages) {
   return values;
 }
 
-std::string toText(const ParameterValues& values) {
+std::string toText(const ParameterValue& value) {
+  if (const auto* word = std::get_if<std::string>(&value)) return *word;
+  const auto& numbers = std::get<std::vector<double>>(value);
   std::ostringstream text;
-  for (const auto& [name, value] : values) {
-    text << (text.tellp() > 0 ? ", " : "") << name << " = ";
-    if (const auto* word = std::get_if<std::string>(&value)) {
-      text << *word;
-      continue;
-    }
-    const auto& numbers = std::get<std::vector<double>>(value);
-    const bool is_one = std::adjacent_find(numbers.begin(), numbers.end(), std::not_equal_to<>()) == numbers.end();
-    if (is_one && !numbers.empty()) {
-      text << numbers.front();  // which stands for all
-      continue;
-    }
-    for (std::size_t i = 0; i < numbers.size(); ++i) text << (i == 0 ? "[" : ", ") << numbers[i];
-    text << "]";
+  const bool is_one = std::adjacent_find(numbers.begin(), numbers.end(), std::not_equal_to<>()) == numbers.end();
+  if (is_one && !numbers.empty()) {
+    text << numbers.front();  // which stands for all
+    return text.str();
   }
+  for (std::size_t i = 0; i < numbers.size(); ++i) text << (i == 0 ? "[" : ", ") << numbers[i];
+  text << "]";
   return text.str();
+}
+
+std::string toText(const ParameterValues& values) {
+  std::string text;
+  for (const auto& [name, value] : values) text += (text.empty() ? "" : ", ") + name + " = " + toText(value);
+  return text;
 }
 
 }  // namespace baton

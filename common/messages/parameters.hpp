@@ -27,7 +27,9 @@ void assignText(const std::string& text, const std::string& of, BoundedString& t
 /// Throws UsageError when a parameter is there twice.
 [[nodiscard]] ParameterValues fromMessages(const std::vector<msg::ParameterValue>& messages);
 
-/// As people read and write it: "kp = 300, form = corrected, kd = [30, 30, 20]".
+/// As people read and write it: "300", "corrected", "[30, 30, 20]"; one number for as many that are equal.
+[[nodiscard]] std::string toText(const ParameterValue& value);
+/// "kp = 300, form = corrected, kd = [30, 30, 20]".
 [[nodiscard]] std::string toText(const ParameterValues& values);
 
 }  // namespace baton

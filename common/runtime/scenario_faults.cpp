@@ -69,10 +69,8 @@ Fault readFault(const YamlNode& node, const Scenario& scenario) {
     kinds.emplace_back(toString(static_cast<FaultKind>(i)), static_cast<FaultKind>(i));
   }
   fault.kind = map["do"].oneOf<FaultKind>(kinds);
-  std::vector<std::pair<std::string, std::string>> services{{kPlantName, kPlantName}};
-  for (const std::string& name : serviceNames(scenario)) {
-    if (name != kPlantName) services.emplace_back(name, name);
-  }
+  std::vector<std::pair<std::string, std::string>> services;
+  for (const std::string& name : serviceNames(scenario)) services.emplace_back(name, name);
   fault.service = map["service"].oneOf<std::string>(services);
   const YamlNode at_s = map["at_s"];
   fault.from_step = readSteps(at_s, scenario);

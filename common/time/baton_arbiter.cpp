@@ -200,7 +200,7 @@ void BatonArbiter::memberFailed(int member, std::uint64_t open_step, const char*
   if (member == holder_) {
     if (phase_ != Phase::kIdle) drop(Kind::kRefused, reason);
     holder_failed_at_ = open_step;
-    std::snprintf(failure_.data(), failure_.size(), "%.150s at step %llu", reason, Step{open_step});
+    write(failure_, "%.150s at step %llu", reason, Step{open_step});
   }
 }
 

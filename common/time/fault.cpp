@@ -1,19 +1,14 @@
 #include "time/fault.hpp"
 
+#include "base/splitmix64.hpp"
+
 namespace baton {
 namespace {
 
-/// SplitMix64 (Steele, Lea, Flood 2014): neighbouring inputs give unrelated outputs.
-std::uint64_t mixed(std::uint64_t x) noexcept {
-  x += 0x9E3779B97F4A7C15ULL;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ULL;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBULL;
-  return x ^ (x >> 31);
-}
-
 /// In [0, 1).
 double uniform(std::uint64_t seed, std::uint64_t step) noexcept {
-  return static_cast<double>(mixed(mixed(seed) ^ step) >> 11) * 0x1.0p-53;
+  const std::uint64_t stream = splitmix(seed + kSplitmixStep);
+  return static_cast<double>(splitmix((stream ^ step) + kSplitmixStep) >> 11) * 0x1.0p-53;
 }
 
 }  // namespace

@@ -2,17 +2,10 @@
 
 #include <cmath>
 
+#include "base/splitmix64.hpp"
+
 namespace baton {
 namespace {
-
-/// Splitmix64: the sequence's step and its output function, so that scramble(x), scramble(x + kStep)... is the
-/// generator.
-constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15;
-std::uint64_t scramble(std::uint64_t x) noexcept {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return x ^ (x >> 31);
-}
 
 /// The upper 53 bits as a number in [-1, 1).
 double signedUnit(std::uint64_t bits) noexcept { return static_cast<double>(bits >> 11) * 0x1p-52 - 1.0; }
@@ -42,12 +35,12 @@ std::int64_t holdIndex(const HoldNoise& noise, double time_s) noexcept {
 
 double standardNormal(std::uint64_t seed, std::int64_t hold, int joint) noexcept {
   // One number scrambled into the next: neighbours in any of the three have unrelated streams.
-  std::uint64_t stream = scramble(seed + kStep);
-  stream = scramble(stream + static_cast<std::uint64_t>(hold) * kStep);
-  stream = scramble(stream + static_cast<std::uint64_t>(joint) * kStep);
+  std::uint64_t stream = splitmix(seed + kSplitmixStep);
+  stream = splitmix(stream + static_cast<std::uint64_t>(hold) * kSplitmixStep);
+  stream = splitmix(stream + static_cast<std::uint64_t>(joint) * kSplitmixStep);
   while (true) {  // a point in the square falls into the circle with probability pi / 4
-    const double x = signedUnit(scramble(stream += kStep));
-    const double y = signedUnit(scramble(stream += kStep));
+    const double x = signedUnit(splitmix(stream += kSplitmixStep));
+    const double y = signedUnit(splitmix(stream += kSplitmixStep));
     const double square = x * x + y * y;
     if (square > 0.0 && square < 1.0) return x * std::sqrt(-2.0 * naturalLogarithm(square) / square);
   }

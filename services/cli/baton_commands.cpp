@@ -15,6 +15,7 @@
 #include "run_commands.hpp"
 #include "runtime/json.hpp"
 #include "runtime/scenario.hpp"
+#include "runtime/swap_report.hpp"
 
 namespace baton {
 namespace {
@@ -226,31 +227,22 @@ void printDone(const msg::SwapOutcome& outcome, const std::optional<msg::SwapRep
 
 Json toJson(const msg::SwapOutcome& outcome, const std::optional<msg::SwapReport>& report,
             const std::optional<double>& delay_us) {
-  Json json{{"done", outcome.done()},
-            {"dry_run", outcome.dry_run()},
-            {"feasible", outcome.dry_run() ? Json(outcome.feasible()) : Json()},
-            {"outgoing", outcome.outgoing().c_str()},
-            {"incoming", outcome.incoming().c_str()},
-            {"decided_at_step", outcome.decided_at_step()},
-            {"forecast_step", outcome.forecast_step()},
-            {"at_step", outcome.at_step()},
-            {"hard", outcome.hard()},
-            {"blend_steps", outcome.blend_steps()},
-            {"forecast_effort_step", numbersOrNull(outcome.forecast_effort_step())},
-            {"raw_effort_step", outcome.raw_effort_step()},
-            {"applied_effort_step", outcome.applied_effort_step()},
-            {"delay_ms", delay_us ? Json(*delay_us * 1e-3) : Json()},
-            {"reason", outcome.reason().c_str()},
-            {"report", nullptr}};
-  if (report) {
-    json["report"] = {{"steps", report->steps()},
-                      {"cut_short", report->cut_short()},
-                      {"max_effort_rate", report->max_effort_rate()},
-                      {"rate_limit_hits", report->rate_limit_hits()},
-                      {"peak_force_deviation_N", report->peak_force_deviation()},
-                      {"blend_energy_J", report->blend_energy()}};
-  }
-  return json;
+  return {{"done", outcome.done()},
+          {"dry_run", outcome.dry_run()},
+          {"feasible", outcome.dry_run() ? Json(outcome.feasible()) : Json()},
+          {"outgoing", outcome.outgoing().c_str()},
+          {"incoming", outcome.incoming().c_str()},
+          {"decided_at_step", outcome.decided_at_step()},
+          {"forecast_step", outcome.forecast_step()},
+          {"at_step", outcome.at_step()},
+          {"hard", outcome.hard()},
+          {"blend_steps", outcome.blend_steps()},
+          {"forecast_effort_step", numbersOrNull(outcome.forecast_effort_step())},
+          {"raw_effort_step", outcome.raw_effort_step()},
+          {"applied_effort_step", outcome.applied_effort_step()},
+          {"delay_ms", delay_us ? Json(*delay_us * 1e-3) : Json()},
+          {"reason", outcome.reason().c_str()},
+          {"report", report ? baton::toJson(*report) : Json()}};
 }
 
 /// Throws UnavailableError.

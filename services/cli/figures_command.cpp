@@ -18,6 +18,7 @@
 #include "report/page.hpp"
 #include "report/pairs.hpp"
 #include "report/plot.hpp"
+#include "report/run_settings.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
@@ -109,6 +110,7 @@ void complete(FigureResult& result, const std::map<std::string, BatchRun>& runs,
       return;
     }
     traces.push_back(readTrace(done.recording));
+    result.settings.push_back(settingsText(traces.back().scenario));
     labelled.push_back({figure.runs.size() > 1 ? run.label : "", &traces.back()});
   }
   const auto add = [&](Check&& check, const std::string& label) {
@@ -124,8 +126,9 @@ void complete(FigureResult& result, const std::map<std::string, BatchRun>& runs,
     if (!run.label.empty()) result.checks.back().what += ", " + run.label;
   }
   if (figure.has_pairs) {
-    for (const FigureRun& run : figure.runs) {
-      const RecordedEfforts efforts = readEfforts(runs.at(run.scenario).recording);
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+      const FigureRun& run = figure.runs[i];
+      const RecordedEfforts efforts = readEfforts(runs.at(run.scenario).recording, traces[i]);
       const PairTable table = pairsOf(efforts);
       result.tables.push_back(toHtml(table));
       for (Check& check : checksOf(table)) add(std::move(check), run.label);
@@ -148,7 +151,7 @@ void complete(FigureResult& result, const std::map<std::string, BatchRun>& runs,
 
 /// What goes wrong with one figure is told in its place, beside what was seen of it: the others are still to be seen.
 FigureResult resultOf(const Figure& figure, const std::map<std::string, BatchRun>& runs, const fs::path& out) {
-  FigureResult result{.figure = figure, .drawings = {}, .tables = {}, .checks = {}, .failure = {}};
+  FigureResult result{.figure = figure, .settings = {}, .drawings = {}, .tables = {}, .checks = {}, .failure = {}};
   try {
     complete(result, runs, out);
   } catch (const std::exception& error) {

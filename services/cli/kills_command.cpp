@@ -80,10 +80,8 @@ Trial tryOne(const Kill& kill, const Scenario& scenario, const std::string& undi
 }
 
 std::string progressText(std::size_t done, std::size_t of, double elapsed_s, std::size_t failed) {
-  constexpr std::size_t kWidth = 24;
-  const std::size_t filled = done * kWidth / of;
   const double left_s = done > 0 ? elapsed_s * static_cast<double>(of - done) / static_cast<double>(done) : 0.0;
-  return fmt::format("[{}{}] {} of {}  {} failed  {}", std::string(filled, '#'), std::string(kWidth - filled, '.'),
+  return fmt::format("{} {} of {}  {} failed  {}", progressBar(static_cast<double>(done) / static_cast<double>(of)),
                      done, of, failed, done > 0 ? fmt::format("{:.0f} s left", left_s) : "");
 }
 

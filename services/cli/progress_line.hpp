@@ -1,4 +1,4 @@
-/// One line on the terminal that is written over; nothing when standard error is a file.
+/// One line on the terminal that is written over, nothing when standard error is a file; and a bar to stand in it.
 #pragma once
 
 #include <unistd.h>
@@ -7,6 +7,14 @@
 #include <string>
 
 namespace baton {
+
+/// "[######..................]" for a part from 0 to 1.
+[[nodiscard]] inline std::string progressBar(double part) {
+  constexpr int kWidth = 24;
+  const int filled = static_cast<int>(part * kWidth);
+  return "[" + std::string(static_cast<std::size_t>(filled), '#') +
+         std::string(static_cast<std::size_t>(kWidth - filled), '.') + "]";
+}
 
 class ProgressLine {
  public:

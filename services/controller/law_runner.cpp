@@ -159,15 +159,20 @@ void LawRunner::archive(StateArchive& state) {
   parameters_.law().archive(state);
 }
 
+LawStatus LawRunner::callLaw(std::uint64_t step, Start start, LawInput& input, JointVector& effort) {
+  const std::size_t slot = StepInputs::slot(step);
+  input.state = states_[slot];
+  input.reference = references_[slot];
+  input.contact = contacts_[slot];
+  Law& law = parameters_.law();
+  if (start == Start::kTakesOver) law.handover(input);
+  if (start == Start::kForgets) law.reset();
+  return law.step(input, effort);
+}
+
 void LawRunner::evaluate(std::uint64_t step, Start start) {
   const std::size_t slot = StepInputs::slot(step);
-  input_.state = states_[slot];
-  input_.reference = references_[slot];
-  input_.contact = contacts_[slot];
-  Law& law = parameters_.law();
-  if (start == Start::kTakesOver) law.handover(input_);
-  if (start == Start::kForgets) law.reset();
-  last_status_ = law.step(input_, effort_);
+  last_status_ = callLaw(step, start, input_, effort_);
   if (last_status_ == LawStatus::kOk) {
     history_[slot] = effort_;
   } else {
@@ -252,15 +257,9 @@ LawStatus LawRunner::tryOut(std::uint64_t step, Start start, JointVector& effort
   Law& law = parameters_.law();
   StateArchive saved = StateArchive::into(law_state_);
   law.archive(saved);
-  const std::size_t slot = StepInputs::slot(step);
   LawInput input = input_;
-  input.state = states_[slot];
-  input.reference = references_[slot];
-  input.contact = contacts_[slot];
-  if (start == Start::kForgets) law.reset();
-  if (start == Start::kTakesOver) law.handover(input);
   effort = effort_;
-  const LawStatus status = law.step(input, effort);
+  const LawStatus status = callLaw(step, start, input, effort);
   StateArchive back = StateArchive::from(std::span(law_state_).first(saved.size()));
   law.archive(back);
   return status;

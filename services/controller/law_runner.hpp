@@ -37,6 +37,7 @@ class LawRunner {
   void compute(std::uint64_t step);
   void restartAsPlanned(std::uint64_t step);
   enum class Start { kContinues, kTakesOver, kForgets };  // of a law at a step: see Law
+  [[nodiscard]] LawStatus callLaw(std::uint64_t step, Start start, LawInput& input, JointVector& effort);
   void evaluate(std::uint64_t step, Start start);
   void publish(std::uint64_t step, bool commands);
   void answerForecasts();

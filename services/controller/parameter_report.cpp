@@ -7,18 +7,14 @@
 namespace baton {
 namespace {
 
-msg::Parameter toMessage(const ParameterSpec& spec, const ParameterValue& value) {
+/// Without its value.
+msg::Parameter toMessage(const ParameterSpec& spec) {
   msg::Parameter message;
   assignText(spec.name, "parameter name", message.name());
   assignText(spec.unit, "unit of parameter " + spec.name, message.unit());
   assignText(spec.doc, "doc of parameter " + spec.name, message.doc());
   message.minimum(spec.minimum);
   message.maximum(spec.maximum);
-  if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
-    message.numbers() = *numbers;
-  } else {
-    assignText(std::get<std::string>(value), "value of parameter " + spec.name, message.word());
-  }
   if (spec.choices.size() > msg::MAX_WORDS) throw UsageError("parameter " + spec.name + " has too many choices");
   for (const std::string& word : spec.choices) {
     assignText(word, "choice of parameter " + spec.name, message.choices().emplace_back());
@@ -34,9 +30,8 @@ msg::ParameterStatus parameterReport(const ControllerConfig& config) {
   msg::ParameterStatus report;
   report.name(config.name);
   report.law(config.law);
-  for (const ParameterSpec& spec : law.parameters) {
-    report.parameters().push_back(toMessage(spec, config.parameters.at(spec.name)));
-  }
+  for (const ParameterSpec& spec : law.parameters) report.parameters().push_back(toMessage(spec));
+  fill(law, config.parameters, report);  // a word is one of the choices, so there is room for it
   return report;
 }
 

@@ -1,24 +1,11 @@
 // What arrives at the plant: contacts, commands, the operator's requests, the services' readiness.
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "control/law.hpp"
 #include "plant.hpp"
 
 namespace baton {
-namespace {
-
-/// nullptr for a law of somebody else's.
-const LawInfo* lawCalled(std::string_view name) {
-  const auto& laws = allLaws();
-  const auto found = std::find_if(laws.begin(), laws.end(), [&](const LawInfo& law) { return law.name == name; });
-  return found == laws.end() ? nullptr : &*found;
-}
-
-}  // namespace
-
 void Plant::onContact(const msg::Contact& message, const dds::RawSample& sample) {
   if (message.step() != master_.step() || master_.hasContact()) return;
   if (!fromMessage(message, contact_)) return abort("the environment sent a contact that is not finite");
@@ -32,11 +19,11 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
   if (!speaksFor(member, sample) || master_.isOver()) return;
   if (message.step() > master_.step() && master_.phase() != SimPhase::kStarting && !arbiter_.hasFailed(member)) {
     // Its state is known to nobody yet.
-    char wrong[80];
-    std::snprintf(wrong, sizeof wrong, "it commanded step %llu while step %llu was open",
-                  static_cast<unsigned long long>(message.step()), static_cast<unsigned long long>(master_.step()));
-    service_.event(msg::SEVERITY_ERROR, "bad_command", nameOf(member) + ": " + wrong);
-    memberLost(member, wrong);
+    ReasonText wrong{};
+    write(wrong, "it commanded step %llu while step %llu was open", static_cast<unsigned long long>(message.step()),
+          static_cast<unsigned long long>(master_.step()));
+    service_.event(msg::SEVERITY_ERROR, "bad_command", nameOf(member) + ": " + wrong.data());
+    memberLost(member, wrong.data());
     return proceed();
   }
   if (message.step() != master_.step()) return;

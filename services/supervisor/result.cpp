@@ -1,9 +1,11 @@
 #include "result.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "runtime/json.hpp"
+#include "runtime/swap_report.hpp"
 #include "runtime/timing.hpp"
 
 namespace baton {
@@ -18,17 +20,10 @@ const char* stateName(const RunResult& result) {
 
 /// What it did to the arm; null when that was not measured.
 Json effectOf(const msg::SwapOutcome& swap, const std::vector<msg::SwapReport>& reports) {
-  for (const msg::SwapReport& report : reports) {
-    if (report.take() != swap.take() || report.plan_id() != swap.plan_id() || report.at_step() != swap.at_step())
-      continue;
-    return {{"steps", report.steps()},
-            {"cut_short", report.cut_short()},
-            {"max_effort_rate", report.max_effort_rate()},
-            {"rate_limit_hits", report.rate_limit_hits()},
-            {"peak_force_deviation_N", report.peak_force_deviation()},
-            {"blend_energy_J", report.blend_energy()}};
-  }
-  return nullptr;
+  const auto found = std::find_if(reports.begin(), reports.end(), [&](const msg::SwapReport& one) {
+    return one.take() == swap.take() && one.plan_id() == swap.plan_id() && one.at_step() == swap.at_step();
+  });
+  return found == reports.end() ? Json() : toJson(*found);
 }
 
 Json toJson(const msg::SwapOutcome& swap, const std::vector<msg::SwapReport>& reports) {

@@ -19,20 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The short scenario without an end, as fast as possible.
-std::string endless(const std::string& extra = "") {
-  std::string text = shortContact();
-  const std::string duration = "duration_s: 0.5\n";
-  text.erase(text.find(duration), duration.size());
-  text.erase(text.find("swaps:"));  // the last key
-  return text + extra;
-}
-
 class KilledService : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(KilledService, EndsTheRunWithAWordAndLeavesNothingBehind) {
   const Bench bench;
-  const LiveRun run(bench, endless());
+  const LiveRun run(bench, endlessContact());
   run.waitForStep(200);
   const int pid = run.pidOf(GetParam());
   ASSERT_GT(pid, 0);
@@ -53,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(Each, KilledService, ::testing::Values("plant", "enviro
 
 TEST(Fault, AKilledSupervisorTakesItsProcessesAlong) {
   const Bench bench;
-  const LiveRun run(bench, endless());
+  const LiveRun run(bench, endlessContact());
   run.waitForStep(200);
   const nlohmann::json cell =
       nlohmann::json::parse(std::ifstream(bench.folder() / "cells" / (std::to_string(bench.domain()) + "-lab.json")));
@@ -68,10 +59,10 @@ TEST(Fault, AKilledSupervisorTakesItsProcessesAlong) {
 TEST(Fault, CtrlCEndsARunInOrder) {
   Bench bench;
   const std::string recording = (bench.folder() / "stopped.mcap").string();
-  const int pid = bench.start(
-      "baton",
-      {"run", bench.write("live.yaml", endless()), "--out", recording, "--domain", std::to_string(bench.domain())},
-      "run.log");
+  const int pid = bench.start("baton",
+                              {"run", bench.write("live.yaml", endlessContact()), "--out", recording, "--domain",
+                               std::to_string(bench.domain())},
+                              "run.log");
   ASSERT_TRUE(eventually([&] {
     const Finished status = bench.baton({"status", "--json"});
     return status.exit_code == 0 && nlohmann::json::parse(status.out).at("step") > 100;
@@ -86,7 +77,7 @@ TEST(Fault, CtrlCEndsARunInOrder) {
 
 TEST(Fault, AHolderThatDiesLosesTheBatonToTheFallback) {
   const Bench bench;
-  const LiveRun run(bench, endless("baton: {fallback: [force, pd]}\n"));
+  const LiveRun run(bench, endlessContact("baton: {fallback: [force, pd]}\n"));
   run.waitForStep(200);
   // Only what is fit may take over: force out of contact is not, and in contact it is.
   ASSERT_EQ(kill(run.pidOf("tracking"), SIGKILL), 0);
@@ -110,7 +101,7 @@ class SecondCopy : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(SecondCopy, GivesWayAndChangesNothing) {
   Bench bench;
-  const LiveRun run(bench, endless());
+  const LiveRun run(bench, endlessContact());
   const bool is_controller = GetParam() == "tracking";
   std::vector<std::string> arguments{"--scenario", (bench.folder() / "live.yaml").string(),
                                      "--run",      run.status.at("run").get<std::string>(),
@@ -175,16 +166,10 @@ TEST(Fault, ALeftOverControllerOfAnotherRunIsNotHeard) {
 
 TEST(Fault, ADeadControllerIsStartedAgainToStandBy) {
   const Bench bench;
-  const LiveRun run(bench, endless("rate: 1\nbaton: {fallback: [impedance]}\n"), {"--restarts", "1"});
+  const LiveRun run(bench, endlessContact("rate: 1\nbaton: {fallback: [impedance]}\n"), {"--restarts", "1"});
   const int before = run.pidOf("pd");
   ASSERT_EQ(kill(before, SIGKILL), 0);
-  EXPECT_TRUE(eventually([&] {
-    const nlohmann::json now = bench.batonJson({"status", "--json"});
-    for (const auto& service : now.at("services")) {
-      if (service.at("name") == "pd" && service.at("pid") != before && service.at("state") == "ready") return true;
-    }
-    return false;
-  }));
+  run.waitForSuccessor("pd", before);
   EXPECT_TRUE(eventually([&] {
     for (const auto& controller : bench.batonJson({"controllers", "--json"})) {
       if (controller.at("name") == "pd" && controller.at("state") == "standby") return true;
@@ -228,7 +213,7 @@ INSTANTIATE_TEST_SUITE_P(Each, RestartedPart, ::testing::Values("environment", "
 
 TEST(Fault, WithoutAFallbackTheBrakeHolds) {
   const Bench bench;
-  const LiveRun run(bench, endless());
+  const LiveRun run(bench, endlessContact());
   run.waitForStep(200);
   ASSERT_EQ(kill(run.pidOf("tracking"), SIGKILL), 0);
   EXPECT_TRUE(eventually([&] { return bench.batonJson({"status", "--json"}).at("holder") == ""; }));
@@ -243,7 +228,7 @@ TEST(Fault, WithoutAFallbackTheBrakeHolds) {
 
 TEST(Fault, AKilledRecorderLeavesWhatItHasShown) {
   const Bench bench;
-  const LiveRun run(bench, endless());
+  const LiveRun run(bench, endlessContact());
   run.waitForStep(200);
   ASSERT_EQ(bench.baton({"sim", "pause"}).exit_code, 0);
   std::uint64_t shown = 0;
@@ -261,7 +246,7 @@ class EarlyCtrlC : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(EarlyCtrlC, LeavesNothingBehind) {
   Bench bench;
-  const std::string scenario = bench.write("live.yaml", endless());
+  const std::string scenario = bench.write("live.yaml", endlessContact());
   const int pid = bench.start("baton", {"run", scenario, "--domain", std::to_string(bench.domain())}, "run.log");
   ASSERT_TRUE(eventually([&] { return processesWith(bench.folder().string()).size() >= GetParam(); }));
   kill(pid, SIGINT);

@@ -10,12 +10,6 @@
 namespace baton::test {
 namespace {
 
-std::string endless(const std::string& extra = "") {
-  std::string text = shortContact();
-  text.erase(text.find("swaps:"));  // the last key
-  return text.replace(text.find("duration_s: 0.5\n"), 16, "rate: 1\n") + extra;
-}
-
 nlohmann::json viewOf(const Bench& bench, const std::string& name) {
   for (const auto& one : bench.batonJson({"controllers", "--json"})) {
     if (one.at("name") == name) return one;
@@ -29,7 +23,7 @@ bool says(const nlohmann::json& reply, const std::string& what) {
 
 TEST(Launch, ANewControllerJoinsTakesTheBatonAndLeaves) {
   const Bench bench;
-  const LiveRun run(bench, endless());
+  const LiveRun run(bench, endlessContact("rate: 1\n"));
   const nlohmann::json started =
       bench.batonJson({"controller", "start", "stiff", "--law", "joint_pd", "--set", "kp=[300, 300, 300]", "--json"});
   ASSERT_TRUE(started.at("done")) << started;
@@ -54,7 +48,7 @@ TEST(Launch, ANewControllerJoinsTakesTheBatonAndLeaves) {
 
 TEST(Launch, AnotherLawOrAnotherProgramReplacesOneThatStandsBy) {
   const Bench bench;
-  const LiveRun run(bench, endless());
+  const LiveRun run(bench, endlessContact("rate: 1\n"));
   // The same again, as after a new build.
   ASSERT_TRUE(bench.batonJson({"controller", "stop", "pd", "--json"}).at("done"));
   const nlohmann::json again = bench.batonJson({"controller", "start", "pd", "--json"});
@@ -71,7 +65,7 @@ TEST(Launch, AnotherLawOrAnotherProgramReplacesOneThatStandsBy) {
 
 TEST(Launch, WhatCannotBeIsRefusedWithTheReasonAndTheRunGoesOn) {
   const Bench bench;
-  const LiveRun run(bench, endless());
+  const LiveRun run(bench, endlessContact("rate: 1\n"));
   const auto refused = [&](std::vector<std::string> arguments, const std::string& reason) {
     arguments.insert(arguments.begin(), "controller");
     arguments.emplace_back("--json");
@@ -93,7 +87,7 @@ TEST(Launch, WhatCannotBeIsRefusedWithTheReasonAndTheRunGoesOn) {
 
 TEST(Launch, ANewcomerThatDiesHarmsNobody) {
   const Bench bench;
-  const LiveRun run(bench, endless());
+  const LiveRun run(bench, endlessContact("rate: 1\n"));
   const nlohmann::json reply = bench.batonJson({"controller", "start", "fresh", "--law", "joint_pd", "--json"});
   ASSERT_TRUE(reply.at("accepted")) << reply;
   ASSERT_EQ(kill(reply.at("pid").get<int>(), SIGKILL), 0);

@@ -103,13 +103,7 @@ TEST(Rerun, RepeatsAFailoverAndTheReturnOfANewProcess) {
   run.waitForStep(200);
   const int before = run.pidOf("pd");
   ASSERT_EQ(kill(before, SIGKILL), 0);
-  EXPECT_TRUE(eventually([&] {
-    const nlohmann::json now = bench.batonJson({"status", "--json"});
-    for (const auto& service : now.at("services")) {
-      if (service.at("name") == "pd" && service.at("pid") != before && service.at("state") == "ready") return true;
-    }
-    return false;
-  }));
+  run.waitForSuccessor("pd", before);
   EXPECT_TRUE(eventually([&] { return bench.batonJson({"swap", "pd", "--json"}).at("done") == true; }));
   const std::uint64_t step = bench.batonJson({"status", "--json"}).at("step");
   run.waitForStep(step + 200);

@@ -31,6 +31,16 @@ struct LiveRun {
   void waitForStep(std::uint64_t step) const {
     EXPECT_TRUE(eventually([&] { return bench.batonJson({"status", "--json"}).at("step") >= step; }));
   }
+  /// Waits for another process of that service to be ready.
+  void waitForSuccessor(const std::string& service, int before) const {
+    EXPECT_TRUE(eventually([&] {
+      const nlohmann::json now = bench.batonJson({"status", "--json"});
+      for (const auto& one : now.at("services")) {
+        if (one.at("name") == service && one.at("pid") != before && one.at("state") == "ready") return true;
+      }
+      return false;
+    }));
+  }
   [[nodiscard]] std::filesystem::path folder() const {
     return bench.folder() / "runs" / status.at("run").get<std::string>();
   }

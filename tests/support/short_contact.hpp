@@ -35,4 +35,13 @@ inline constexpr int kSecondSwap = 700;
          extra;
 }
 
+/// The same without an end and without planned handovers, as fast as possible.
+[[nodiscard]] inline std::string endlessContact(const std::string& extra = "") {
+  std::string text = shortContact();
+  const std::string duration = "duration_s: 0.5\n";
+  text.erase(text.find(duration), duration.size());
+  text.erase(text.find("swaps:"));  // the last key
+  return text + extra;
+}
+
 }  // namespace baton::test

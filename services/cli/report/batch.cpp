@@ -14,6 +14,7 @@
 #include <memory>
 
 #include "dds/topics.hpp"
+#include "progress_line.hpp"
 #include "recording.hpp"
 #include "runtime/build_id.hpp"
 #include "runtime/child.hpp"
@@ -174,10 +175,7 @@ class Batch {
       steps += std::min(0.95 * job.steps, secondsSince(job.started) * pace / std::max(1, running_));
     }
     const double part = total_ > 0.0 ? steps / total_ : 1.0;
-    constexpr int kWidth = 24;
-    const int filled = static_cast<int>(part * kWidth);
-    return fmt::format("[{}{}] {:3.0f} %  {:.0f} s left  {}", std::string(static_cast<std::size_t>(filled), '#'),
-                       std::string(static_cast<std::size_t>(kWidth - filled), '.'), 100.0 * part,
+    return fmt::format("{} {:3.0f} %  {:.0f} s left  {}", progressBar(part), 100.0 * part,
                        part > 0.0 ? elapsed_s * (1.0 - part) / part : 0.0, names);
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "dds/codec.hpp"
 #include "dds/topics.hpp"
@@ -74,11 +75,7 @@ class Filler {
     const std::uint64_t k = step - run_.trace.first_step;  // of an earlier step: a large number
     return k < static_cast<std::uint64_t>(run_.trace.steps()) ? static_cast<Eigen::Index>(k) : -1;
   }
-  [[nodiscard]] int indexOf(const char* name) const {
-    const auto& all = run_.trace.scenario.controllers;
-    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == name; });
-    return found == all.end() ? RecordedEfforts::kUnknown : static_cast<int>(found - all.begin());
-  }
+  [[nodiscard]] int indexOf(const char* name) const { return controllerIndex(run_.trace.scenario, name); }
 
   RecordedEfforts& run_;
   std::vector<int> states_;
@@ -92,9 +89,17 @@ Eigen::VectorXd RecordedEfforts::applied(Eigen::Index k) const {
   return Eigen::VectorXd::Constant(trace.tau.rows(), kNan);
 }
 
-RecordedEfforts readEfforts(const std::filesystem::path& file) {
+int controllerIndex(const Scenario& scenario, std::string_view name) {
+  const auto& all = scenario.controllers;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == name; });
+  return found == all.end() ? RecordedEfforts::kUnknown : static_cast<int>(found - all.begin());
+}
+
+RecordedEfforts readEfforts(const std::filesystem::path& file) { return readEfforts(file, readTrace(file)); }
+
+RecordedEfforts readEfforts(const std::filesystem::path& file, Trace trace) {
   RecordedEfforts run;
-  run.trace = readTrace(file);
+  run.trace = std::move(trace);
   const mcap::Reader reader(file);
   if (!reader.info().is_complete) run.cut = reader.info().problem;
   Filler fill(run);

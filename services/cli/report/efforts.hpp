@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "msg/swap.h"
@@ -33,5 +34,10 @@ struct RecordedEfforts {
 
 /// Throws as readTrace does.
 [[nodiscard]] RecordedEfforts readEfforts(const std::filesystem::path& file);
+/// The same with the file's trace, which has been read already.
+[[nodiscard]] RecordedEfforts readEfforts(const std::filesystem::path& file, Trace trace);
+
+/// The scenario's controller called so: its index, or kUnknown.
+[[nodiscard]] int controllerIndex(const Scenario& scenario, std::string_view name);
 
 }  // namespace baton

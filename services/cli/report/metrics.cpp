@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "theory_tools.hpp"
+
 namespace baton {
 namespace {
 
@@ -99,12 +101,11 @@ Metrics metricsOf(const Trace& trace) {
   m.unrecorded_steps = static_cast<std::uint64_t>(unrecorded.count());
   for (int i = 0; i < robot.size(); ++i) {
     const Joint& joint = robot.joints[static_cast<std::size_t>(i)];
-    const bool turns = joint.kind == JointKind::kRevolute;
     if (has_joints) {
       m.joints.push_back(
-          errorMetrics("q" + std::to_string(i + 1), turns ? "rad" : "m", trace.q_d.row(i), trace.q.row(i), dt_s));
+          errorMetrics(theory::jointName(i), theory::jointUnit(robot, i), trace.q_d.row(i), trace.q.row(i), dt_s));
     }
-    EffortMetrics effort{.name = "tau" + std::to_string(i + 1), .unit = turns ? "N m" : "N"};
+    EffortMetrics effort{.name = "tau" + std::to_string(i + 1), .unit = theory::effortUnit(robot, i)};
     for (Eigen::Index k = 1; k < trace.steps(); ++k) {  // at step 0 nothing has been applied yet
       effort.peak = std::max(effort.peak, std::abs(trace.tau(i, k)));
       if (std::abs(trace.tau(i, k)) >= joint.effort_limit) effort.saturated_s += dt_s;

@@ -8,8 +8,6 @@
 
 #include "base/error.hpp"
 #include "html.hpp"
-#include "run_settings.hpp"
-#include "runtime/paths.hpp"
 
 namespace baton {
 namespace {
@@ -39,29 +37,32 @@ constexpr const char* kHead = R"(<!doctype html>
 </style>
 )";
 
-constexpr const char* kSymbols =
-    "<p>The arm has one revolute joint (q1, rad) and two prismatic ones (q2, q3, m); L is how far its third link is "
-    "out. "
-    "q_d, x_d: desired joint positions and tip pose; e = q_d - q; x~ = x_d - x. tau: joint torques and forces. B, n: "
-    "the "
-    "arm's inertia matrix, and its Coriolis, centrifugal and gravity terms C qd + g together. J_P, J_A: Jacobian of "
-    "the "
-    "tip's position, and of position and ZYZ angles. h_e: force and moment of the tip on the wall; f_d: the desired "
-    "force; Ke: the wall's stiffness; z_r: where it stands. Kp, Kd, Ki: gains on error, velocity and integral; Md, Mt: "
-    "masses that impedance and admittance control give the tip; x_F: the position that force control adds to x_d. "
-    "<em>Held</em> and <em>late</em>, of a force: kept over a step, and kept from the step before.</p>\n"
-    "<p>The report prints no masses and inertias; those used here are identified from the digits of B, g and tau that "
-    "it "
-    "does print. That these digits come out again proves nothing; motions, forces and steady states do. The tolerance "
-    "of a number at rest is 1e-4 of it, or 1e-6 where theory says zero; on the way it covers what the step of the run "
-    "is "
-    "known to cost.</p>\n";
+constexpr const char* kIntroduction = R"(<h1>The report's figures, run again</h1>
+<p>Each figure below comes from a recording of the distributed system: plant, wall, trajectory and controller as
+processes of their own on DDS, in lockstep. <em>Our runs</em> says whether what was measured agrees with what theory
+predicts, number by number. Only where it does is the report's claim judged: it <em>holds</em> when all that it says
+was measured so, <em>holds in part</em> when some of it was and the rest was not, and <em>is wrong</em> when none of
+it was.</p>
+)";
 
-constexpr const char* kStudiesHead =
-    "<h2 id='studies'>Beyond the report</h2>\n"
-    "<p>Questions of our own. Each starts from recordings of the distributed system, like the figures above; charts "
-    "are "
-    "computed by running the same scenario again in one process, many times over, with a number varied.</p>\n";
+constexpr const char* kSymbols =
+    R"(<p>The arm has one revolute joint (q1, rad) and two prismatic ones (q2, q3, m); L is how far its third link is out.
+q_d, x_d: desired joint positions and tip pose; e = q_d - q; x~ = x_d - x. tau: joint torques and forces. B, n: the
+arm's inertia matrix, and its Coriolis, centrifugal and gravity terms C qd + g together. J_P, J_A: Jacobian of the
+tip's position, and of position and ZYZ angles. h_e: force and moment of the tip on the wall; f_d: the desired
+force; Ke: the wall's stiffness; z_r: where it stands. Kp, Kd, Ki: gains on error, velocity and integral; Md, Mt:
+masses that impedance and admittance control give the tip; x_F: the position that force control adds to x_d.
+<em>Held</em> and <em>late</em>, of a force: kept over a step, and kept from the step before.</p>
+<p>The report prints no masses and inertias; those used here are identified from the digits of B, g and tau that it
+does print. That these digits come out again proves nothing; motions, forces and steady states do. The tolerance of
+a number at rest is 1e-4 of it, or 1e-6 where theory says zero; on the way it covers what the step of the run is
+known to cost.</p>
+)";
+
+constexpr const char* kStudiesHead = R"(<h2 id='studies'>Beyond the report</h2>
+<p>Questions of our own. Each starts from recordings of the distributed system, like the figures above; charts are
+computed by running the same scenario again in one process, many times over, with a number varied.</p>
+)";
 
 const char* className(ClaimVerdict verdict) {
   switch (verdict) {
@@ -135,10 +136,10 @@ void writeFigure(std::ofstream& page, const FigureResult& result) {
                       : result.failure.empty() ? "Our runs do not agree with theory here."
                                                : "Something could not be run, measured or drawn.");
   std::string runs;
-  for (const FigureRun& run : figure.runs) {
-    const std::string scenario = figure.folder + "/" + run.scenario;
-    runs += fmt::format("{}<code>deploy/baton run {}</code> <small>{}</small>", runs.empty() ? "" : "<br>",
-                        escaped(scenario), escaped(settingsText(loadScenario(findScenario(scenario).string()))));
+  for (std::size_t i = 0; i < figure.runs.size(); ++i) {
+    runs += fmt::format("{}<code>deploy/baton run {}/{}</code>", runs.empty() ? "" : "<br>", escaped(figure.folder),
+                        escaped(figure.runs[i].scenario));
+    if (i < result.settings.size()) runs += fmt::format(" <small>{}</small>", escaped(result.settings[i]));
   }
   page << fmt::format("<dt>{}<dd>{}\n</dl>\n", figure.runs.size() == 1 ? "scenario" : "scenarios", runs);
   page << "<p>" << agreement(result) << "</p>\n";
@@ -197,14 +198,7 @@ void writePage(const std::filesystem::path& file, const std::vector<FigureResult
                const std::vector<Erratum>& errata, const PageFacts& facts) {
   std::ofstream page(file, std::ios::binary);
   page << kHead;
-  page << "<h1>The report's figures, run again</h1>\n"
-          "<p>Each figure below comes from a recording of the distributed system: plant, wall, trajectory and "
-          "controller "
-          "as processes of their own on DDS, in lockstep. <em>Our runs</em> says whether what was measured agrees with "
-          "what theory predicts, number by number. Only where it does is the report's claim judged: it <em>holds</em> "
-          "when all that it says was measured so, <em>holds in part</em> when some of it was and the rest was not, and "
-          "<em>is wrong</em> when none of it was.</p>\n";
-  page << kSymbols;
+  page << kIntroduction << kSymbols;
   page << fmt::format("<p>{} runs, {} of them as recorded before; {:.0f} s. Made by {}.</p>\n", facts.runs,
                       facts.reused, facts.elapsed_s, escaped(facts.build));
   writeSummary(page, results);

@@ -12,6 +12,7 @@ namespace baton {
 /// A figure with what its runs showed.
 struct FigureResult {
   Figure figure;
+  std::vector<std::string> settings;  // of the runs that were read, in their order: see settingsText()
   std::vector<std::string> drawings;  // stems of .svg and .png beside the page
   std::vector<std::string> tables;    // HTML
   std::vector<Check> checks;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -16,13 +15,6 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kAtRest = 0.005;  // m/s: a tip that is slower stands, as far as a handover can tell
 
 using Pair = std::pair<std::size_t, std::size_t>;
-
-std::optional<std::size_t> indexOf(const Scenario& scenario, const std::string& name) {
-  for (std::size_t c = 0; c < scenario.controllers.size(); ++c) {
-    if (scenario.controllers[c].name == name) return c;
-  }
-  return std::nullopt;
-}
 
 /// Column `k` of a matrix; NaN before its first and after its last.
 Eigen::VectorXd columnOf(const Eigen::MatrixXd& all, Eigen::Index k) {
@@ -92,15 +84,18 @@ PairTable pairsOf(const RecordedEfforts& run) {
   PairTable table{.run = &run, .handovers = {}, .refusals = {}};
   const Scenario& scenario = run.trace.scenario;
   for (const msg::SwapOutcome& swap : run.trace.swaps) {
-    const auto from = indexOf(scenario, swap.outgoing().c_str()), to = indexOf(scenario, swap.incoming().c_str());
-    if (from && to && swap.plan_id() != 0) table.handovers.push_back(handoverOf(run, *from, *to, swap.at_step()));
+    const int from = controllerIndex(scenario, swap.outgoing().c_str());
+    const int to = controllerIndex(scenario, swap.incoming().c_str());
+    if (from < 0 || to < 0 || swap.plan_id() == 0) continue;
+    table.handovers.push_back(
+        handoverOf(run, static_cast<std::size_t>(from), static_cast<std::size_t>(to), swap.at_step()));
   }
   for (const msg::SwapOutcome& swap : run.refused) {
-    const auto to = indexOf(scenario, swap.incoming().c_str());
+    const int to = controllerIndex(scenario, swap.incoming().c_str());
     const std::uint64_t k = swap.decided_at_step() - run.trace.first_step;
-    if (!to || k >= run.holder.size() || run.holder[k] < 0) continue;
-    table.refusals.push_back(
-        {static_cast<std::size_t>(run.holder[k]), *to, swap.decided_at_step(), swap.reason().c_str()});
+    if (to < 0 || k >= run.holder.size() || run.holder[k] < 0) continue;
+    table.refusals.push_back({static_cast<std::size_t>(run.holder[k]), static_cast<std::size_t>(to),
+                              swap.decided_at_step(), swap.reason().c_str()});
   }
   return table;
 }

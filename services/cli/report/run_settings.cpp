@@ -7,17 +7,10 @@
 #include <cmath>
 
 #include "control/law.hpp"
+#include "messages/parameters.hpp"
 
 namespace baton {
 namespace {
-
-std::string valueText(const ParameterValue& value) {
-  if (const auto* word = std::get_if<std::string>(&value)) return *word;
-  const auto& numbers = std::get<std::vector<double>>(value);
-  const bool are_equal = std::all_of(numbers.begin(), numbers.end(), [&](double x) { return x == numbers.front(); });
-  return are_equal && !numbers.empty() ? fmt::format("{:g}", numbers.front())
-                                       : fmt::format("({:g})", fmt::join(numbers, ", "));
-}
 
 /// Gains always, what only switches something when it is not at its default.
 std::string controllerText(const ControllerConfig& controller) {
@@ -26,7 +19,7 @@ std::string controllerText(const ControllerConfig& controller) {
     const ParameterValue& value = controller.parameters.at(spec.name);
     const bool is_switch = spec.size == ParameterSize::kChoice;
     if (is_switch && std::get<std::string>(value) == spec.choices.front()) continue;
-    text += fmt::format(" {} = {},", spec.name, valueText(value));
+    text += fmt::format(" {} = {},", spec.name, toText(value));
   }
   text.pop_back();
   return text;

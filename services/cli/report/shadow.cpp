@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "theory_tools.hpp"
+
 namespace baton {
 namespace {
 
@@ -13,9 +15,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 ShadowJoint jointOf(const RecordedEfforts& run, int who, int i) {
   const Trace& trace = run.trace;
-  const bool turns = trace.scenario.robot.joints[static_cast<std::size_t>(i)].kind == JointKind::kRevolute;
   ShadowJoint joint{.name = fmt::format("tau{}", i + 1),
-                    .unit = turns ? "N m" : "N",
+                    .unit = theory::effortUnit(trace.scenario.robot, i),
                     .rms = kNan,
                     .largest = kNan,
                     .jump = kNan,
@@ -133,8 +134,8 @@ std::vector<Panel> shadowPanels(const RecordedEfforts& run) {
   const Trace& trace = run.trace;
   std::vector<Panel> panels;
   for (int i = 0; i < trace.scenario.robot.size(); ++i) {
-    const bool turns = trace.scenario.robot.joints[static_cast<std::size_t>(i)].kind == JointKind::kRevolute;
-    Panel panel{.y_label = fmt::format("\u03c4_{{{}}} [{}]", i + 1, turns ? "N m" : "N"), .curves = {}};
+    Panel panel{.y_label = fmt::format("\u03c4_{{{}}} [{}]", i + 1, theory::effortUnit(trace.scenario.robot, i)),
+                .curves = {}};
     for (std::size_t c = 0; c < run.effort.size(); ++c) {
       const Eigen::RowVectorXd effort = run.effort[c].row(i);
       if (!effort.array().isFinite().any()) continue;  // the table says that it has none

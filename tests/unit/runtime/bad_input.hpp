@@ -10,6 +10,8 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "runtime/scenario.hpp"
+#include "runtime/yaml.hpp"
 
 namespace baton::test {
 
@@ -17,6 +19,12 @@ namespace baton::test {
 inline std::string deployPath(const std::string& relative) {
   const auto root = std::filesystem::path(__FILE__).parent_path() / "../../..";
   return (root / "deploy" / relative).lexically_normal().string();
+}
+
+/// The scenario of that text, for the report's arm; `file` is only a name for messages.
+inline Scenario rppScenario(const std::string& file, const std::string& text) {
+  static const std::string robot = readYamlFile(deployPath("robots/rpp.yaml"));
+  return parseScenario(file, text, "rpp.yaml", robot);
 }
 
 /// The text with its one occurrence of `from` replaced.

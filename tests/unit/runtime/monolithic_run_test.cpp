@@ -10,9 +10,9 @@
 namespace baton {
 namespace {
 
-using test::deployPath;
 using test::refusal;
 using test::replaced;
+using test::rppScenario;
 
 const char* const kPress = R"(name: press
 robot: rpp.yaml
@@ -30,10 +30,7 @@ controllers:
 active: soft
 )";
 
-Scenario parse(const std::string& text) {
-  static const std::string robot = readYamlFile(deployPath("robots/rpp.yaml"));
-  return parseScenario("press.yaml", text, "rpp.yaml", robot);
-}
+Scenario parse(const std::string& text) { return rppScenario("press.yaml", text); }
 
 std::uint64_t hashOf(const std::string& text) {
   MonolithicRun run(parse(text));

@@ -9,8 +9,8 @@
 namespace baton {
 namespace {
 
-using test::deployPath;
 using test::refusal;
+using test::rppScenario;
 
 const std::string kHold = R"(name: hold
 robot: rpp.yaml
@@ -24,10 +24,7 @@ controllers:
 active: soft
 )";
 
-Scenario parse(const std::string& changes) {
-  static const std::string robot = readYamlFile(deployPath("robots/rpp.yaml"));
-  return parseScenario("hold.yaml", kHold + "changes:\n" + changes, "rpp.yaml", robot);
-}
+Scenario parse(const std::string& changes) { return rppScenario("hold.yaml", kHold + "changes:\n" + changes); }
 
 std::uint64_t hashOf(const Scenario& scenario) {
   MonolithicRun run(scenario);

@@ -9,9 +9,9 @@ namespace baton {
 namespace {
 
 using test::BadInput;
-using test::deployPath;
 using test::refusal;
 using test::replaced;
+using test::rppScenario;
 
 const std::string kFaulty = R"(name: faulty
 robot: rpp.yaml
@@ -31,10 +31,7 @@ faults:
   - {do: kill, service: recorder, at_s: 4}
 )";
 
-Scenario parse(const std::string& text) {
-  static const std::string robot = readYamlFile(deployPath("robots/rpp.yaml"));
-  return parseScenario("faulty.yaml", text, "rpp.yaml", robot);
-}
+Scenario parse(const std::string& text) { return rppScenario("faulty.yaml", text); }
 
 TEST(ScenarioFaults, AreReadAsTheyAreWritten) {
   const std::vector<Fault> faults = parse(kFaulty).faults;

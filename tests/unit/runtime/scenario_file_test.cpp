@@ -15,6 +15,7 @@ using test::BadInput;
 using test::deployPath;
 using test::refusal;
 using test::replaced;
+using test::rppScenario;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -61,10 +62,7 @@ baton: {margin_steps: 6, blend_s: 0.15, max_effort_step: 40, max_effort_rate: [3
 recording: {enabled: false, compression: lz4, credit_steps: 64}
 )";
 
-Scenario parse(const std::string& text) {
-  static const std::string robot = readYamlFile(deployPath("robots/rpp.yaml"));
-  return parseScenario("trial.yaml", text, "rpp.yaml", robot);
-}
+Scenario parse(const std::string& text) { return rppScenario("trial.yaml", text); }
 
 /// kTrial from the beginning of one text to the beginning of another, for cutting out whole sections.
 std::string section(const std::string& from, const std::string& to) {

@@ -14,9 +14,9 @@ namespace baton {
 namespace {
 
 using test::BadInput;
-using test::deployPath;
 using test::refusal;
 using test::replaced;
+using test::rppScenario;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -52,10 +52,7 @@ const std::string kSine = kHead + R"(trajectory:
     seed: 7
 )";
 
-Scenario parse(const std::string& text) {
-  static const std::string robot = readYamlFile(deployPath("robots/rpp.yaml"));
-  return parseScenario("parts.yaml", text, "rpp.yaml", robot);
-}
+Scenario parse(const std::string& text) { return rppScenario("parts.yaml", text); }
 
 TEST(ScenarioTrajectory, ReadsWaypointsOfTheTip) {
   const Scenario s = parse(kTip);

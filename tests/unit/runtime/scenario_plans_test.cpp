@@ -11,9 +11,9 @@ namespace baton {
 namespace {
 
 using test::BadInput;
-using test::deployPath;
 using test::refusal;
 using test::replaced;
+using test::rppScenario;
 
 const char* const kPlans = R"(name: plans
 robot: rpp.yaml
@@ -40,10 +40,7 @@ stops:
 baton: {blend_s: 0.1}
 )";
 
-Scenario parse(const std::string& text) {
-  static const std::string robot = readYamlFile(deployPath("robots/rpp.yaml"));
-  return parseScenario("plans.yaml", text, "rpp.yaml", robot);
-}
+Scenario parse(const std::string& text) { return rppScenario("plans.yaml", text); }
 
 TEST(ScenarioPlans, GivesEachFieldItsPlace) {
   const Scenario s = parse(kPlans);
