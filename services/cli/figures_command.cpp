@@ -136,7 +136,7 @@ void complete(FigureResult& result, const std::map<std::string, BatchRun>& runs,
   }
   for (const std::string& kind : figure.plots) {
     const std::string stem = figure.runs.front().scenario + "_" + kind;
-    draw(out / stem, figure.title, kind, labelled);
+    draw(out / stem, figure.title, kind, labelled, figure.until_s);
     result.drawings.push_back(stem);
   }
   for (const ChartRequest& request : figure.charts) {

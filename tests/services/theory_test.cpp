@@ -315,7 +315,6 @@ std::vector<Case> cases() {
       {"adaptation_effect",
        {kAdaptive, kAdaptationOff},
        {largerErrors(0, "rms error of q1"), largerErrors(1, "part of the rms error of q1")}},
-      {"adaptation_is_inert", {kAdaptive, kAdaptationOff}, {largerErrors(0, "part of the rms error of q1")}},
       {"adaptation_learns",
        {kTuned},
        {largerErrors(0, "rms error of q1, first quarter"), mistaken(kTuned, {"k: 0.005", "k: 0.006"})}},

@@ -179,6 +179,8 @@ ChartResult couplingStability(const Inputs& in) {
     ChartSeries stable{.label = "dies out", .style = Style::kDots, .colour = 0, .points = {}};
     ChartSeries unstable{.label = "grows", .style = Style::kCrosses, .colour = 1, .points = {}};
     ChartSeries limit{.label = "limit by theory", .style = Style::kLine, .colour = 2, .points = {}};
+    ChartSeries swing{
+        .label = "half a swing a step; not tried above", .style = Style::kDashes, .colour = 3, .points = {}};
     int points = 0, agreeing = 0;
     for (const double K : stiffnesses) {
       for (const double step_s : steps_s) {
@@ -194,6 +196,8 @@ ChartResult couplingStability(const Inputs& in) {
     }
     for (const double K : geometric(stiffnesses.front(), stiffnesses.back(), 80)) {
       limit.points.emplace_back(K, theory::stableStep(at(K), coupling));
+      const double half_s = kPi * std::sqrt(mass.m / K);
+      if (half_s <= steps_s.back()) swing.points.emplace_back(K, half_s);
     }
     const std::string name = toString(coupling);
     result.chart.panels.push_back({.title = name,
@@ -201,7 +205,7 @@ ChartResult couplingStability(const Inputs& in) {
                                    .y_label = "step [s]",
                                    .log_x = true,
                                    .log_y = true,
-                                   .series = {stable, unstable, limit}});
+                                   .series = {stable, unstable, limit, swing}});
     result.checks.push_back(theory::within(name + ": points of the map where the run does what the eigenvalues say", "",
                                            points, agreeing, 0.0));
     const double measured =
@@ -245,7 +249,8 @@ ChartResult couplingError(const Inputs& in) {
     }
     const int order = coupling != Coupling::kDerivatives ? 1 : touches ? 2 : 4;
     const Eigen::Vector2d coarsest = errors.points.front(), finest = errors.points.back();
-    ChartSeries slope{.label = "order " + std::to_string(order), .style = Style::kLine, .colour = colour, .points = {}};
+    ChartSeries slope{
+        .label = name + ", order " + std::to_string(order), .style = Style::kLine, .colour = colour, .points = {}};
     slope.points = {finest, {coarsest.x(), finest.y() * std::pow(coarsest.x() / finest.x(), order)}};
     at_finest.push_back(finest.y());
     result.checks.push_back(

@@ -59,7 +59,7 @@ Figure readCommon(const YamlMap& map) {
 
 Figure readFigure(const YamlNode& node) {
   const YamlMap map =
-      node.map({"figure", "title", "claim", "theory", "finding", "claim_holds", "runs", "plots", "checks"});
+      node.map({"figure", "title", "claim", "theory", "finding", "claim_holds", "runs", "plots", "until_s", "checks"});
   Figure figure = readCommon(map);
   readChecks(map, figure);
   figure.number = map["figure"].text();
@@ -70,6 +70,7 @@ Figure readFigure(const YamlNode& node) {
                                                            {"none", ClaimVerdict::kNone}});
   figure.folder = "report";
   for (const YamlNode& plot : map["plots"].list(1, 8)) figure.plots.push_back(known(plot, "plot", plotKinds()));
+  figure.until_s = map.numberOr("until_s", {.minimum = 0.0, .maximum = 1e6, .unit = "s"}, 0.0);
   return figure;
 }
 

@@ -36,6 +36,7 @@ struct Figure {
   std::string folder;  // of the scenarios, below deploy/scenarios
   std::vector<FigureRun> runs;
   std::vector<std::string> plots;
+  double until_s = 0.0;  // where the plots end; 0: with the runs
   std::vector<ChartRequest> charts;
   bool has_pairs = false;  // each run is shown as a table of its handovers, law by law
   std::vector<CheckRequest> checks;

@@ -13,6 +13,7 @@
 #include "control/nearest_name.hpp"
 #include "gnuplot.hpp"
 #include "theory.hpp"
+#include "trajectory/trajectory.hpp"
 
 namespace baton {
 namespace {
@@ -45,6 +46,7 @@ std::vector<Panel> signalPanels(const std::vector<LabelledRun>& runs, const std:
     const std::string& label = runs[run].label;
     panel.curves.push_back({label.empty() ? "actual" : label, &trace, (trace.*actual).row(row), run, false});
     if (desired == nullptr || !(trace.*desired).row(row).array().isFinite().any()) return;
+    if (desired == &Trace::h_d && trace.h_d.isZero(0.0)) return;  // nobody's wish: most laws do not control force
     // The same reference is drawn once.
     const Eigen::MatrixXd& first = runs[0].trace->*desired;
     if (run > 0 && (trace.*desired).cols() == first.cols() && (trace.*desired).row(row) == first.row(row)) return;
@@ -60,6 +62,38 @@ std::vector<Panel> errorPanels(const std::vector<LabelledRun>& runs, const std::
     panel.curves.push_back({runs[run].label.empty() ? "desired - actual" : runs[run].label, &trace,
                             (trace.*desired).row(row) - (trace.*actual).row(row), run, false});
   });
+}
+
+/// How far from q_d as it would be without noise. What q_d is only noise of, an arm should not follow.
+std::vector<Panel> goalErrorPanels(const std::vector<LabelledRun>& runs, const std::vector<std::string>& labels) {
+  std::vector<Eigen::MatrixXd> goals;
+  goals.reserve(runs.size());
+  for (const LabelledRun& run : runs) {
+    const Trace& trace = *run.trace;
+    TrajectorySpec quiet = trace.scenario.trajectory;
+    quiet.noise.reset();
+    const Trajectory trajectory(trace.scenario.robot, quiet);
+    Reference wanted;
+    Eigen::MatrixXd& goal = goals.emplace_back(trace.q.rows(), trace.steps());
+    for (Eigen::Index k = 0; k < trace.steps(); ++k) {
+      trajectory.evaluate(trace.time(k), wanted);
+      goal.col(k) = wanted.q;
+    }
+  }
+  return panelsOf(runs, labels, [&](Panel& panel, Eigen::Index row, std::size_t run) {
+    const Trace& trace = *runs[run].trace;
+    panel.curves.push_back({runs[run].label.empty() ? "goal - actual" : runs[run].label, &trace,
+                            goals[run].row(row) - trace.q.row(row), run, false});
+  });
+}
+
+/// Errors that differ by orders of magnitude can be told apart on a logarithmic axis only.
+std::vector<Panel> sizesOf(std::vector<Panel> panels) {
+  for (Panel& panel : panels) {
+    panel.log_y = true;
+    for (Curve& curve : panel.curves) curve.y = curve.y.cwiseAbs();
+  }
+  return panels;
 }
 
 /// Where force control wants the tip, x_F, which is nobody's message, and where it is.
@@ -88,6 +122,10 @@ std::vector<Panel> panels(const std::string& kind, const std::vector<LabelledRun
   const Trace& first = *runs.front().trace;
   if (kind == "joints") return signalPanels(runs, jointLabels(first, "q", "rad", "m"), &Trace::q, &Trace::q_d);
   if (kind == "joint_errors") return errorPanels(runs, jointLabels(first, "e", "rad", "m"), &Trace::q, &Trace::q_d);
+  if (kind == "joint_error_sizes") {
+    return sizesOf(errorPanels(runs, jointLabels(first, "|e|", "rad", "m"), &Trace::q, &Trace::q_d));
+  }
+  if (kind == "goal_errors") return goalErrorPanels(runs, jointLabels(first, "goal - q", "rad", "m"));
   if (kind == "efforts") return signalPanels(runs, jointLabels(first, "\u03c4", "N m", "N"), &Trace::tau, nullptr);
   if (kind == "tip") return signalPanels(runs, {"x [m]", "y [m]", "z [m]"}, &Trace::p_WE, &Trace::p_WE_d);
   if (kind == "tip_errors") return errorPanels(runs, {"e_x [m]", "e_y [m]", "e_z [m]"}, &Trace::p_WE, &Trace::p_WE_d);
@@ -159,31 +197,54 @@ void writeMarks(std::ostream& script, const std::vector<LabelledRun>& runs) {
            run.trace->swaps.size() > kMostNames ? "" : std::string("to ") + swap.incoming().c_str(), "#777777");
     }
   }
-  std::map<double, std::string> touches;  // runs that touch at the same time share a mark
+  std::multimap<double, std::string> touches;
   for (const LabelledRun& run : runs) {
-    const auto touch = firstContact(*run.trace);
-    if (!touch) continue;
-    std::string& who = touches[*touch];
-    if (!run.label.empty()) who += (who.empty() ? ": " : ", ") + run.label;
+    if (const auto touch = firstContact(*run.trace)) touches.emplace(*touch, run.label);
   }
-  const bool differ = touches.size() > 1;
-  for (const auto& [time_s, who] : touches) mark(time_s, differ ? "contact" + who : "contact", "#b0306a");
+  const double close = 0.03 * runs.front().trace->time(runs.front().trace->last());  // one text's height
+  for (auto touch = touches.begin(); touch != touches.end();) {  // those that touch nearly together share a mark
+    const double time_s = touch->first;
+    std::string who;
+    std::size_t count = 0;
+    for (; touch != touches.end() && touch->first <= time_s + close; ++touch, ++count) {
+      who += (who.empty() ? ": " : ", ") + touch->second;
+    }
+    mark(time_s, count == touches.size() ? "contact" : "contact" + who, "#b0306a");
+  }
 }
 
-/// Left to itself gnuplot would complain of a panel whose curves are all flat.
-std::string yRange(const Panel& panel) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+struct Span {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  [[nodiscard]] double size() const { return std::max(0.0, high - low); }
+};
+
+Span spanOf(const Panel& panel) {
+  Span span;
   for (const Curve& curve : panel.curves) {
     for (const double y : curve.y) {
       if (!std::isfinite(y)) continue;
-      low = std::min(low, y);
-      high = std::max(high, y);
+      span.low = std::min(span.low, y);
+      span.high = std::max(span.high, y);
     }
   }
-  if (!(low <= high)) return "set yrange [-1:1]\n";  // nothing to draw
-  constexpr double kFlat = 1e-12;                    // of the value
-  const bool is_flat = high - low <= kFlat * std::max(std::abs(low), std::abs(high));
-  return is_flat ? fmt::format("set yrange [{}:{}]\n", low - 1.0, low + 1.0) : "set autoscale y\n";
+  return span;
+}
+
+/// A panel where nothing happens is drawn as flat as it is, at the scale of the others: left to itself, gnuplot would
+/// blow rounding errors up to the size of the panel.
+std::string yRange(const Panel& panel, double largest_span) {
+  constexpr double kFlat = 1e-9;          // of what happens elsewhere
+  constexpr double kSmallestSize = 1e-6;  // on a logarithmic axis, of the largest
+  const Span span = spanOf(panel);
+  if (panel.log_y && span.high > 0.0) {
+    return fmt::format("set logscale y\nset format y '10^{{%T}}'\nset yrange [{}:{}]\n", span.high * kSmallestSize,
+                       span.high * 2.0);
+  }
+  const double half = largest_span > 0.0 ? largest_span / 2.0 : 1.0;
+  if (span.low > span.high) return fmt::format("set yrange [{}:{}]\n", -half, half);  // nothing to draw
+  const bool is_flat = span.size() <= std::max(kFlat * largest_span, 1e-12 * std::abs(span.high));
+  return is_flat ? fmt::format("set yrange [{}:{}]\n", span.low - half, span.high + half) : "set autoscale y\n";
 }
 
 std::string dataOf(const std::vector<Panel>& all) {
@@ -209,11 +270,13 @@ std::string dataOf(const std::vector<Panel>& all) {
 
 std::string commandsFor(const std::string& title, const std::vector<Panel>& all, const std::vector<LabelledRun>& runs) {
   std::ostringstream commands;
+  double largest_span = 0.0;
+  for (const Panel& panel : all) largest_span = std::max(largest_span, spanOf(panel).size());
   commands << fmt::format("set multiplot layout {},1 title {} noenhanced\n", all.size(), quoted(title));
   commands << "set grid lc rgb '#dddddd'\nset key outside right top vertical maxrows 40 samplen 2\nset lmargin 12\n";
   writeMarks(commands, runs);
   for (std::size_t p = 0; p < all.size(); ++p) {
-    commands << fmt::format("set ylabel {}\n", quoted(all[p].y_label)) << yRange(all[p]);
+    commands << fmt::format("set ylabel {}\n", quoted(all[p].y_label)) << yRange(all[p], largest_span);
     commands << (p + 1 == all.size() ? "set xlabel 'time [s]'\n" : "set xlabel ''\n");
     commands << "plot ";
     for (std::size_t c = 0; c < all[p].curves.size(); ++c) {
@@ -232,14 +295,15 @@ std::string commandsFor(const std::string& title, const std::vector<Panel>& all,
 }  // namespace
 
 const std::vector<std::string>& plotKinds() {
-  static const std::vector<std::string> kinds{"joints", "joint_errors", "tip",   "tip_errors",
-                                              "angles", "efforts",      "force", "force_reference"};
+  static const std::vector<std::string> kinds{
+      "joints",     "joint_errors", "joint_error_sizes", "goal_errors", "tip",
+      "tip_errors", "angles",       "efforts",           "force",       "force_reference"};
   return kinds;
 }
 
-void draw(const fs::path& stem, const std::string& title, const std::string& kind,
-          const std::vector<LabelledRun>& runs) {
-  draw(stem, title, panels(kind, runs), runs);
+void draw(const fs::path& stem, const std::string& title, const std::string& kind, const std::vector<LabelledRun>& runs,
+          double until_s) {
+  draw(stem, title, panels(kind, runs), runs, until_s);
 }
 
 void draw(const fs::path& stem, const std::string& title, const std::vector<Panel>& panels,

@@ -33,7 +33,6 @@ constexpr Entry kChecks[] = {
     {"settling", theory::settling},
     {"tracks", theory::tracks},
     {"adaptation_effect", theory::adaptationEffect, true},
-    {"adaptation_is_inert", theory::adaptationIsInert, true},
     {"adaptation_learns", theory::adaptationLearns},
     {"task_goal", theory::taskGoal},
     {"no_contact", theory::noContact},

@@ -113,7 +113,6 @@ using Checks = std::vector<Check>;
 [[nodiscard]] Checks secondOrderError(const Inputs& in);
 [[nodiscard]] Checks tracks(const Inputs& in);
 [[nodiscard]] Checks adaptationEffect(const Inputs& in);
-[[nodiscard]] Checks adaptationIsInert(const Inputs& in);
 [[nodiscard]] Checks adaptationLearns(const Inputs& in);
 
 // theory_task.cpp

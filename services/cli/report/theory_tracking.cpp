@@ -202,20 +202,6 @@ Checks adaptationEffect(const Inputs& in) {
   return checks;
 }
 
-// That part is below a thousandth: the adaptation does nothing worth the name.
-Checks adaptationIsInert(const Inputs& in) {
-  const Trace &with = in.run, &without = *in.other;
-  expectLaw(with, {"adaptive"});
-  const Eigen::Index from = with.steps() / 2, to = restStep(with);
-  Checks checks;
-  for (int i = 0; i < with.scenario.robot.size(); ++i) {
-    checks.push_back(within("part of the rms error of " + jointName(i) + " that it takes away: none to speak of", "",
-                            0.0, 1.0 - rms(with.q_d - with.q, i, from, to) / rms(without.q_d - without.q, i, from, to),
-                            1e-3));
-  }
-  return checks;
-}
-
 // The rms error over the first and the last quarter of the run, from the continuous closed loop.
 Checks adaptationLearns(const Inputs& in) {
   // What is left at the end has faded by up to four time constants, and a step changes each by about a hundredth.
