@@ -102,9 +102,12 @@ std::optional<ParameterChange> ParameterSchedule::accept(Draft& draft, std::uint
     change.at_step = next_step;
   }
   const ParameterChange accepted = change;
-  entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(draft.place), entries_.end());
-  std::move(draft.entries.begin(), draft.entries.end(), std::back_inserter(entries_));
-  entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(in_force_));
+  std::vector<Entry> now;
+  now.reserve(draft.place - in_force_ + draft.entries.size());
+  const auto in_force = entries_.begin() + static_cast<std::ptrdiff_t>(in_force_);
+  std::move(in_force, entries_.begin() + static_cast<std::ptrdiff_t>(draft.place), std::back_inserter(now));
+  std::move(draft.entries.begin(), draft.entries.end(), std::back_inserter(now));
+  draft.entries = std::exchange(entries_, std::move(now));
   in_force_ = 0;
   ++revision_;
   return accepted;

@@ -51,7 +51,7 @@ class ParameterSchedule {
     std::size_t place = 0;   // among the entries
     ParameterValues before;  // in force until then
     std::vector<ParameterChange> changes;
-    std::vector<Entry> entries;  // made of `changes`
+    std::vector<Entry> entries;  // made of `changes`; after accept() what these have replaced
   };
   /// @param next_step  the first step that is not computed yet; an earlier one cannot be changed.
   /// Throws UsageError when nothing is to change or too many wait already.

@@ -115,11 +115,9 @@ struct Scenario {
   std::vector<std::string> warnings;  // what is odd but workable, with file and line
 
   [[nodiscard]] double stepSeconds() const { return static_cast<double>(step_ns) * 1e-9; }
-  /// Whether all parts save their state at the start of this step: now and then, and at the end.
-  [[nodiscard]] bool hasCheckpointAt(std::uint64_t step) const {
-    if (step == 0 || step == end_step) return step != 0;
-    return recording.checkpoint_steps > 0 && step % recording.checkpoint_steps == 0;
-  }
+  /// Whether all parts save their state at the start of this step: now and then, and at the end; not where a message
+  /// is stuck, since what it is stuck at is in nobody's state.
+  [[nodiscard]] bool hasCheckpointAt(std::uint64_t step) const;
   [[nodiscard]] bool hasEnvironment() const { return !walls.empty(); }
   /// Whether something of this service goes wrong on purpose.
   [[nodiscard]] bool wantsFaultOf(const std::string& service) const;

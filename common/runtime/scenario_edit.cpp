@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "runtime/yaml.hpp"
 
 namespace baton {
 namespace {
@@ -108,6 +109,7 @@ std::string appendToScenario(const std::string& text, const std::string& key, co
 
 std::string withController(const std::string& text, const std::string& name, const std::string& law,
                            const std::string& parameters) {
+  if (!isName(name)) throw UsageError(std::string("expected ") + kNameRule + ", found '" + name + "'");
   const YAML::Node controllers = YAML::Load(text)["controllers"];
   const auto known = std::find_if(controllers.begin(), controllers.end(),
                                   [&](const YAML::Node& one) { return one["name"].as<std::string>("") == name; });

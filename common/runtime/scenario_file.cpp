@@ -248,6 +248,14 @@ ArmConfig Scenario::armConfig() const {
       .step_s = stepSeconds(), .substeps = substeps, .start_q = start_q, .start_qd = start_qd, .coupling = coupling};
 }
 
+bool Scenario::hasCheckpointAt(std::uint64_t step) const {
+  const bool is_due =
+      step != 0 && (step == end_step || (recording.checkpoint_steps > 0 && step % recording.checkpoint_steps == 0));
+  return is_due && std::none_of(faults.begin(), faults.end(), [&](const Fault& fault) {
+           return fault.kind == FaultKind::kStuck && strikes(fault, step);
+         });
+}
+
 bool Scenario::wantsFaultOf(const std::string& service) const {
   return std::any_of(faults.begin(), faults.end(), [&](const Fault& fault) { return fault.service == service; });
 }

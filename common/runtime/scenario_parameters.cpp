@@ -8,7 +8,7 @@
 namespace baton {
 namespace {
 
-constexpr std::size_t kMaxChanges = 256;  // each has a law made for it before the run begins
+constexpr std::size_t kMaxChanges = 4096;  // each has a law made for it before the run begins
 
 ParameterValue readParameter(const YamlNode& node, bool is_choice) {
   if (is_choice) return node.text();

@@ -98,6 +98,11 @@ class Service {
   [[nodiscard]] boost::asio::io_context& executor() { return executor_; }
   [[nodiscard]] std::mutex& mutex() { return mutex_; }
   [[nodiscard]] StepStamp stampOf(std::uint64_t step) const;
+  /// Whether a sample was written before this process began: meant for one that it has been started in the place of.
+  /// DDS delivers what it remembers to whoever comes late.
+  [[nodiscard]] bool isFromBefore(const dds::RawSample& sample) const {
+    return sample.source_timestamp_ns < participant_.self().started_ns;
+  }
   /// Ends run() because another process has this one's place; any thread.
   void giveWay(const std::string& why);
   /// Matched with everybody it needs; any thread.

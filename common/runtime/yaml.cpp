@@ -292,17 +292,16 @@ std::string YamlNode::text(std::size_t max_length) const {
   return element_->scalar;
 }
 
-std::string YamlNode::name() const {
-  const std::string expected = "a name of 1 to 31 characters out of A-Z a-z 0-9 _ - that does not begin with -";
-  if (!isScalar()) refuse(expected);
-  const std::string& name = element_->scalar;
+bool isName(const std::string& text) {
   const auto is_fit = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   };
-  if (name.empty() || name.size() > 31 || name[0] == '-' || !std::all_of(name.begin(), name.end(), is_fit)) {
-    refuse(expected);
-  }
-  return name;
+  return !text.empty() && text.size() <= 31 && text[0] != '-' && std::all_of(text.begin(), text.end(), is_fit);
+}
+
+std::string YamlNode::name() const {
+  if (!isScalar() || !isName(element_->scalar)) refuse(kNameRule);
+  return element_->scalar;
 }
 
 std::size_t YamlNode::indexOfWord(const std::vector<std::string>& words) const {

@@ -34,6 +34,11 @@ struct NumberRange {
   [[nodiscard]] std::string text() const;
 };
 
+/// What services, controllers and the like may be called.
+inline constexpr const char* kNameRule =
+    "a name of 1 to 31 characters out of A-Z a-z 0-9 _ - that does not begin with -";
+[[nodiscard]] bool isName(const std::string& text);
+
 class YamlMap;
 
 /// A value and its place in a document. Cheap to copy; keeps the document alive.

@@ -18,7 +18,7 @@ BatonArbiter::BatonArbiter(const ArbiterConfig& config)
       failed_at_(config.members.size(), 0) {}
 
 void BatonArbiter::act(Kind kind, const HandoverPlan& plan, const char* format, ...) noexcept {
-  if (queue_size_ == kQueue) return;  // taken at every step; a step makes two at most
+  if (queue_size_ == kQueue) return;  // taken after every request and every step, which make three at most
   ArbiterAction& action = queue_[(queue_head_ + queue_size_++) % kQueue];
   action.kind = kind;
   action.plan = plan;
@@ -225,13 +225,36 @@ bool BatonArbiter::isQuiet(std::uint64_t step) const noexcept {
 }
 
 void BatonArbiter::archive(StateArchive& state) noexcept {
-  state(last_plan_id_, holder_, contact_);
-  for (char& failed : failed_) state(failed);
-  for (std::uint64_t& step : failed_at_) state(step);
-  if (holder_ < kBrake || holder_ >= static_cast<int>(failed_.size())) {
-    holder_ = kBrake;
-    state.fail();
+  state(last_plan_id_, contact_);
+  archiveMember(state, holder_);
+  auto count = static_cast<std::uint32_t>(failed_.size());
+  state(count);
+  if (state.isRestoring()) {
+    std::fill(failed_.begin(), failed_.end(), char{0});
+    std::fill(failed_at_.begin(), failed_at_.end(), 0);
   }
+  for (std::uint32_t i = 0; i < count && state.isGood(); ++i) {
+    auto member = static_cast<int>(i);
+    archiveMember(state, member);
+    if (member == kBrake) return state.fail();
+    state(failed_[static_cast<std::size_t>(member)], failed_at_[static_cast<std::size_t>(member)]);
+  }
+}
+
+void BatonArbiter::archiveMember(StateArchive& state, int& member) const noexcept {
+  std::array<char, 32> name{};  // that of kBrake is empty
+  if (!state.isRestoring() && member != kBrake) {
+    const std::string& own = config_.members[static_cast<std::size_t>(member)].name;
+    std::copy_n(own.begin(), std::min(own.size(), name.size() - 1), name.begin());
+  }
+  for (char& letter : name) state(letter);
+  if (!state.isRestoring()) return;
+  name.back() = '\0';
+  const auto& members = config_.members;
+  const auto found =
+      std::find_if(members.begin(), members.end(), [&](const ArbiterMember& one) { return one.name == name.data(); });
+  member = found == members.end() ? kBrake : static_cast<int>(found - members.begin());
+  if (member == kBrake && name.front() != '\0') state.fail();
 }
 
 void BatonArbiter::prepareRewind() noexcept {

@@ -119,6 +119,8 @@ class BatonArbiter {
   [[nodiscard]] bool isQuiet(std::uint64_t step) const noexcept;
   /// What to remember at a step at which isQuiet().
   void archive(StateArchive& state) noexcept;
+  /// A member by its name: the list of a branch may have another order, by when its controllers were started.
+  void archiveMember(StateArchive& state, int& member) const noexcept;
   /// A handover under way is refused: the run goes back to its first step.
   void prepareRewind() noexcept;
   /// Back to the state before the first step. Whoever is `absent` has failed there; a holder that has is followed by

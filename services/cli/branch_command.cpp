@@ -94,7 +94,7 @@ CheckpointSet checkpointAt(const Fork& fork, const fs::path& folder, const RunRe
   const mcap::Reader reader(original.file);
   const bool is_ours = metadataValue(reader, "baton.run", "build_id") == buildId();
   const CheckpointSet newest =
-      is_ours ? newestCheckpoint(original.file, original.begin_ns, step, services) : CheckpointSet{};
+      is_ours ? newestCheckpoint(original.file, original.checkpoints_from_ns, step, services) : CheckpointSet{};
   if (newest.step == step) return newest;
 
   std::fprintf(stderr, "repeating steps %llu to %llu\n", static_cast<unsigned long long>(newest.step),
@@ -117,7 +117,8 @@ CheckpointSet checkpointAt(const Fork& fork, const fs::path& folder, const RunRe
   }
   const CheckpointSet made = newestCheckpoint(lead_in.out, 0, step, services);
   if (made.step != step) {
-    throw UsageError("step " + std::to_string(step) + " lies in a handover: choose one before or after it");
+    throw UsageError("step " + std::to_string(step) +
+                     " lies in a handover or where a message is stuck: choose one before or after it");
   }
   return made;
 }

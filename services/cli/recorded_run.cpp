@@ -10,6 +10,7 @@
 #include "dds/codec.hpp"
 #include "dds/topics.hpp"
 #include "mcap/reader.hpp"
+#include "messages/parameters.hpp"
 #include "report/recording.hpp"
 #include "runtime/scenario_edit.hpp"
 
@@ -84,20 +85,60 @@ std::string stopsText(const RecordedRun& run) {
   return listText(entries);
 }
 
-std::vector<std::string> changeEntries(const RecordedRun& run) {
-  std::vector<std::string> entries;
-  for (const msg::Decision& decision : run.decisions) {
-    if (decision.cause() != msg::DECISION_PARAMETERS) continue;
-    std::vector<std::string> values;
-    for (const msg::ParameterValue& value : decision.values()) {
-      const std::string shown = value.numbers().empty() ? std::string(value.word().c_str())
-                                                        : fmt::format("[{:.17g}]", fmt::join(value.numbers(), ", "));
-      values.push_back(fmt::format("{}: {}", value.name().c_str(), shown));
-    }
-    entries.push_back(fmt::format("{{at_s: {}, controller: {}, set: {{{}}}}}",
-                                  secondsText(decision.at_step(), run.scenario), decision.controller().c_str(),
-                                  fmt::join(values, ", ")));
+std::string yamlOf(const ParameterValue& value) {
+  if (const auto* word = std::get_if<std::string>(&value)) return *word;
+  return fmt::format("[{:.17g}]", fmt::join(std::get<std::vector<double>>(value), ", "));
+}
+
+std::string yamlOf(const PlannedChange& change, const Scenario& scenario) {
+  std::vector<std::string> values;
+  for (const auto& [name, value] : change.change.set) values.push_back(name + ": " + yamlOf(value));
+  return fmt::format("{{at_s: {}, controller: {}, set: {{{}}}}}", secondsText(change.change.at_step, scenario),
+                     change.controller, fmt::join(values, ", "));
+}
+
+/// A process that is started again knows of the scenario's values only: what an operator has changed for the one before
+/// it, in force or still to come, is taken back.
+PlannedChange takenBack(const PlannedChange& asked, std::uint64_t restart_step, const Scenario& scenario) {
+  PlannedChange back{.controller = asked.controller, .change = asked.change};
+  back.change.at_step = std::max(asked.change.at_step, restart_step);
+  ParameterValues planned = scenario.controller(asked.controller).parameters;
+  for (const ParameterChange& change : scenario.changesOf(asked.controller)) {
+    if (change.at_step > back.change.at_step) break;
+    for (const auto& [name, value] : change.set) planned[name] = value;
   }
+  for (auto& [name, value] : back.change.set) value = planned.at(name);
+  return back;
+}
+
+/// Whether the scenario only plans it: then no process was started again.
+bool isPlannedReturn(const msg::Decision& decision, const Scenario& scenario) {
+  return std::any_of(scenario.failures.begin(), scenario.failures.end(), [&](const PlannedFailure& failure) {
+    return failure.controller == decision.controller().c_str() && failure.returns_at_step == decision.step();
+  });
+}
+
+std::vector<std::string> changeEntries(const RecordedRun& run) {
+  std::vector<PlannedChange> changes;
+  std::map<std::string, std::vector<PlannedChange>> asked;  // of the process that now is the controller
+  for (const msg::Decision& decision : run.decisions) {
+    const std::string controller = decision.controller().c_str();
+    if (decision.cause() == msg::DECISION_PARAMETERS) {
+      changes.push_back(
+          {.controller = controller,
+           .change = {.at_step = decision.at_step(), .set = fromMessages(decision.values()), .is_planned = true}});
+      asked[controller].push_back(changes.back());
+    } else if (decision.cause() == msg::DECISION_RETURNED && decision.restarted() &&
+               !isPlannedReturn(decision, run.scenario)) {
+      for (const PlannedChange& one : asked[controller]) {
+        changes.push_back(takenBack(one, decision.step(), run.scenario));
+      }
+      asked[controller].clear();
+    }
+  }
+  std::vector<std::string> entries;
+  entries.reserve(changes.size());
+  for (const PlannedChange& change : changes) entries.push_back(yamlOf(change, run.scenario));
   return entries;
 }
 
@@ -111,19 +152,28 @@ bool cameToNothing(const std::vector<msg::Decision>& decisions, std::size_t inde
                      });
 }
 
-/// Whether a controller held the baton before that log time.
-bool heldBefore(const mcap::Reader& reader, const std::string& name, std::uint64_t log_time_ns) {
-  bool has_held = false;
+/// Whether what a controller computes has mattered before that log time: it held the baton, or was asked to take it.
+bool matteredBefore(const mcap::Reader& reader, const std::string& name, std::uint64_t log_time_ns) {
+  bool has_mattered = false;
   msg::PlantState state;
-  reader.forEachMessage({.topics = {dds::topics::kPlantState.name}}, [&](const mcap::MessageView& view) {
-    has_held = has_held || (view.log_time_ns < log_time_ns && dds::decode(view.data, state) && state.holder() == name);
-  });
-  return has_held;
+  msg::SwapPlan plan;
+  reader.forEachMessage(
+      {.topics = {dds::topics::kPlantState.name, dds::topics::kSwapPlan.name}}, [&](const mcap::MessageView& view) {
+        if (has_mattered || view.log_time_ns >= log_time_ns) return;
+        has_mattered =
+            view.channel->topic == dds::topics::kPlantState.name
+                ? dds::decode(view.data, state) && state.holder() == name
+                : dds::decode(view.data, plan) && plan.incoming() == name && plan.phase() != msg::SWAP_FORECAST;
+      });
+  return has_mattered;
 }
+
+/// Log times at which controllers were given another law or other values to begin with, by name: the last ones.
+using Relaunches = std::map<std::string, std::uint64_t>;
 
 /// The scenario with the controllers that were started while the run went on, from its first step: as long as they
 /// stand by, nobody feels them.
-std::string withLaunches(const mcap::Reader& reader, std::string text, const fs::path& file) {
+std::string withLaunches(const mcap::Reader& reader, std::string text, const fs::path& file, Relaunches& relaunches) {
   std::map<std::uint64_t, msg::LaunchRequest> requests;
   forEach(reader, 0, dds::topics::kLaunchRequest,
           [&](const msg::LaunchRequest& request) { requests[request.request_id()] = request; });
@@ -134,10 +184,11 @@ std::string withLaunches(const mcap::Reader& reader, std::string text, const fs:
     const std::string name = request.name().c_str();
     if (request.action() != msg::LAUNCH_START) return;
     const bool is_changed = request.law().size() > 0 || request.parameters().size() > 0;
-    if (is_changed && heldBefore(reader, name, view.log_time_ns)) {
-      throw UsageError(file.string() + ": " + name +
-                       " was given another law after it had held the baton, and a scenario has one for each name");
+    if (is_changed && matteredBefore(reader, name, view.log_time_ns)) {
+      throw UsageError(file.string() + ": " + name + " was given another law or other values after it had held the " +
+                       "baton or had been asked to take it, and a scenario has one of each for a name");
     }
+    if (is_changed) relaunches[name] = view.log_time_ns;
     text = withController(text, name, request.law().c_str(), request.parameters().c_str());
   });
   return text;
@@ -148,12 +199,14 @@ std::string withLaunches(const mcap::Reader& reader, std::string text, const fs:
 RecordedRun readRecordedRun(const fs::path& file) {
   const mcap::Reader reader(file);
   const Take take = lastTake(reader);
+  Relaunches relaunches;
   RecordedRun run{.file = file,
-                  .scenario_text = withLaunches(reader, needed(reader, "scenario.yaml", file), file),
+                  .scenario_text = withLaunches(reader, needed(reader, "scenario.yaml", file), file, relaunches),
                   .robot_text = needed(reader, "robot.yaml", file),
                   .checkpoint = attachmentText(reader, "checkpoint.mcap"),
                   .scenario = {},
                   .begin_ns = take.begin_ns,
+                  .checkpoints_from_ns = take.begin_ns,
                   .first_step = 0,
                   .last_step = 0,
                   .decisions = {}};
@@ -167,9 +220,19 @@ RecordedRun readRecordedRun(const fs::path& file) {
   });
   if (!has_states) throw UsageError(file.string() + ": expected the states of a run, found none");
   // By their take, not by when they came: what is decided at its first step may be recorded before its begin.
-  forEach(reader, 0, dds::topics::kDecision, [&](const msg::Decision& decision) {
-    if (decision.take() == take.number) run.decisions.push_back(decision);
-  });
+  msg::Decision decision;
+  reader.forEachMessage({.topics = {dds::topics::kDecision.name}, .order = mcap::MessageFilter::Order::kFile},
+                        [&](const mcap::MessageView& view) {
+                          if (!dds::decode(view.data, decision) || decision.take() != take.number) return;
+                          const auto relaunched = relaunches.find(decision.controller().c_str());
+                          // What was changed in a law that is not in the scenario any more was felt by nobody.
+                          const bool is_gone = decision.cause() == msg::DECISION_PARAMETERS &&
+                                               relaunched != relaunches.end() && view.log_time_ns < relaunched->second;
+                          if (!is_gone) run.decisions.push_back(decision);
+                        });
+  for (const auto& [name, log_time_ns] : relaunches) {
+    run.checkpoints_from_ns = std::max(run.checkpoints_from_ns, log_time_ns);
+  }
   return run;
 }
 

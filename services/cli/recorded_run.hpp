@@ -21,6 +21,8 @@ struct RecordedRun {
   std::optional<std::string> checkpoint;  // the bytes of the file that a branch began with
   Scenario scenario;
   std::uint64_t begin_ns = 0;  // log time of the take's begin
+  // The first of the checkpoints that are of this scenario: before a controller is given another law they are not.
+  std::uint64_t checkpoints_from_ns = 0;
   std::uint64_t first_step = 0;
   std::uint64_t last_step = 0;           // of which there is a state
   std::vector<msg::Decision> decisions;  // of each writer in their order

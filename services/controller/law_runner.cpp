@@ -53,8 +53,9 @@ LawRunner::LawRunner(Service& service)
     service.input(dds::topics::kContact, {kEnvironmentName},
                   [this](const msg::Contact& message, const dds::RawSample& sample) { onContact(message, sample); });
   }
-  service.input(dds::topics::kSwapPlan, {kPlantName},
-                [this](const msg::SwapPlan& plan, const dds::RawSample&) { onPlan(plan); });
+  service.input(dds::topics::kSwapPlan, {kPlantName}, [this](const msg::SwapPlan& plan, const dds::RawSample& sample) {
+    if (!service_.isFromBefore(sample)) onPlan(plan);
+  });
   service.onRewind([this](std::uint64_t step) { return isQuiet(step); }, [this] { forget(); });
   service.every(std::chrono::milliseconds(100), [this] {
     const std::lock_guard lock(service_.mutex());

@@ -5,6 +5,11 @@
 #include "parameter_report.hpp"
 
 namespace baton {
+namespace {
+
+constexpr const char* kOver = "the run is over";
+
+}  // namespace
 
 ParameterChanges::ParameterChanges(Service& service, const ControllerConfig& config, const LawInfo& info,
                                    std::uint64_t first_step)
@@ -19,7 +24,9 @@ ParameterChanges::ParameterChanges(Service& service, const ControllerConfig& con
       decision_out_(service.output(dds::topics::kDecision, withRecorder({}, service.scenario()))),
       report_(parameterReport(config)) {
   service.input(dds::topics::kParameterRequest, {},
-                [this](const msg::ParameterRequest& request, const dds::RawSample&) { onRequest(request); });
+                [this](const msg::ParameterRequest& request, const dds::RawSample& sample) {
+                  if (!service_.isFromBefore(sample)) onRequest(request);
+                });
 }
 
 bool ParameterChanges::advance(std::uint64_t step) {
@@ -39,7 +46,8 @@ void ParameterChanges::rewind() {
 }
 
 void ParameterChanges::onRequest(const msg::ParameterRequest& request) {
-  if (service_.isOver() || config_.name != request.controller().c_str()) return;
+  if (config_.name != request.controller().c_str()) return;
+  if (service_.isOver()) return refuse(request, kOver);
   const std::uint64_t at_step = request.at_step();
   if (at_step != 0 && at_step < next_step_) {
     return refuse(request, "step " + std::to_string(at_step) + " has gone by: expected " + std::to_string(next_step_) +
@@ -53,12 +61,13 @@ void ParameterChanges::onRequest(const msg::ParameterRequest& request) {
 }
 
 void ParameterChanges::decide(const msg::ParameterRequest& request, std::uint32_t take) {
+  ParameterSchedule::Draft draft;  // takes along what is replaced, to be destroyed when the loop may go on
   std::unique_lock lock(service_.mutex());
   try {
     const ParameterChange asked{request.at_step(), fromMessages(request.values()), false};
     while (!service_.isOver()) {
       if (take != service_.take()) return refuse(request, "the run was reset");
-      ParameterSchedule::Draft draft = schedule_.draft(asked, next_step_);
+      draft = schedule_.draft(asked, next_step_);
       lock.unlock();
       try {
         schedule_.make(draft);
@@ -70,6 +79,7 @@ void ParameterChanges::decide(const msg::ParameterRequest& request, std::uint32_
       if (take != service_.take()) continue;
       if (const auto change = schedule_.accept(draft, next_step_)) return accept(request, *change);
     }
+    refuse(request, kOver);
   } catch (const UsageError& error) {
     refuse(request, error.what());
   }

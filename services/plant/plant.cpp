@@ -177,7 +177,7 @@ void Plant::resumeFromCheckpoint() {
 void Plant::archive(StateArchive& state) {
   arm_.archive(state);
   arbiter_.archive(state);
-  state(chain_hash_, missed_, missed_in_a_row_, metered_plan_);
+  state(chain_hash_, missed_, missed_in_a_row_, silent_in_a_row_, metered_plan_);
   meter_.archive(state);
   archiveScheduled(state);
 }
@@ -225,20 +225,26 @@ void Plant::tick() {
   for (int member = 0; member < static_cast<int>(members_.size()); ++member) commandedAsPlanned(member);  // or never
   const Hold missing = master_.inputsHold();
   if (missing == Hold::kNone) {
-    missed_in_a_row_ = 0;
+    missed_in_a_row_ = silent_in_a_row_ = 0;
   } else {
     ++missed_;
+    if (!master_.hasCommand() && missing != Hold::kContact) ++silent_in_a_row_;
     const bool give_up = ++missed_in_a_row_ > scenario_.max_missed_steps;
     if (give_up) {
       effort_ = arm_.brakeEffort();
     } else if (!master_.hasCommand()) {
       keepTorque();
     }
-    if (give_up && !master_.hasCommand() && missing != Hold::kContact) {
-      service_.event(msg::SEVERITY_ERROR, "missed", nameOf(arbiter_.holder()) + " was silent for too many steps");
-      members_[static_cast<std::size_t>(arbiter_.holder())].is_lost = true;
-      decideFailure(arbiter_.holder(), "it was silent for too many steps");
-      missed_in_a_row_ = 0;  // counted anew for whoever is next
+    if (silent_in_a_row_ > scenario_.max_missed_steps) {
+      const int silent = arbiter_.holder();
+      service_.event(msg::SEVERITY_ERROR, "missed", nameOf(silent) + " was silent for too many steps");
+      Member& one = members_[static_cast<std::size_t>(silent)];
+      one.is_lost = true;
+      one.is_new = false;
+      decideFailure(silent, "it was silent for too many steps");
+      dry_runs_.memberFailed(silent);
+      publishDryRuns();
+      missed_in_a_row_ = silent_in_a_row_ = 0;  // counted anew for whoever is next
     } else if (missed_in_a_row_ == scenario_.max_missed_steps + 1) {
       service_.event(msg::SEVERITY_WARNING, "missed",
                      "the environment is silent: the brake holds until it speaks again");
@@ -257,6 +263,7 @@ void Plant::endStep() {
   // A new holder that is late for its first step (realtime) takes over with its first command.
   const bool takes_over = completed_ && master_.hasCommand();
   const JointVector raw_step = takes_over ? takeOver(step) : JointVector();
+  if (takes_over && keeps_torque_) effort_ = arm_.holdingEffort(step);  // the blend it reckoned with is gone
   if (!arm_.move(arm_.blended(step, effort_), contact_)) {
     return abort("the motion is no longer finite: the step may be too long for the law's gains");
   }

@@ -152,6 +152,7 @@ class Plant {
     bool is_lost_as_planned = false;    // the scenario says so
     bool fails_when_commanded = false;  // the same, once its command for the open step is here
   };
+  static void becomes(Member& member, const Speaker& speaker);
   std::vector<Member> members_;
   std::map<std::string, Speaker, std::less<>> newcomers_;  // ready controllers that are no members yet
   FailureScript failure_script_;
@@ -179,6 +180,7 @@ class Plant {
   bool keeps_torque_ = false;                       // for the open step
   StepTiming timing_;
   std::uint64_t missed_in_a_row_ = 0;
+  std::uint64_t silent_in_a_row_ = 0;  // of them, those where the holder had what it needs
   std::uint64_t missed_ = 0;
   const std::int64_t made_ns_ = steadyNow();
   std::int64_t started_ns_ = 0;

@@ -12,10 +12,11 @@ namespace {
 /// By an operator, not by the scenario.
 bool isAsked(const HandoverRequest& request) { return request.request_id != 0; }
 
-void archiveRequest(StateArchive& state, HandoverRequest& request) {
+void archiveRequest(StateArchive& state, const BatonArbiter& arbiter, HandoverRequest& request) {
   bool has_blend = request.blend_steps.has_value();
   std::uint64_t blend_steps = request.blend_steps.value_or(0);
-  state(request.request_id, request.target, request.at_step, request.force, request.hard, has_blend, blend_steps);
+  arbiter.archiveMember(state, request.target);
+  state(request.request_id, request.at_step, request.force, request.hard, has_blend, blend_steps);
   request.blend_steps = has_blend ? std::optional(blend_steps) : std::nullopt;
 }
 
@@ -61,12 +62,12 @@ void Plant::archiveScheduled(StateArchive& state) {
   if (state.isRestoring()) {
     for (; count > 0 && state.isGood(); --count) {
       HandoverRequest request;
-      archiveRequest(state, request);
+      archiveRequest(state, arbiter_, request);
       scheduled_.push_back(request);
     }
   } else {
     for (HandoverRequest& request : scheduled_) {
-      if (isAsked(request)) archiveRequest(state, request);
+      if (isAsked(request)) archiveRequest(state, arbiter_, request);
     }
   }
 }
@@ -76,10 +77,11 @@ void Plant::planSwaps() {
   // then.
   const std::uint64_t at_step = master_.step() + scenario_.baton.margin_steps + 1;
   for (const HandoverRequest& request : scheduled_) {
-    if (request.at_step == at_step) arbiter_.request(request, master_.step());
+    if (request.at_step != at_step) continue;
+    arbiter_.request(request, master_.step());
+    publishSwapActions();  // each by itself: the arbiter's ring holds what one request brings, not what sixty do
   }
   std::erase_if(scheduled_, [&](const HandoverRequest& request) { return request.at_step <= at_step; });
-  publishSwapActions();
 }
 
 void Plant::refuseScheduled(const char* reason) {

@@ -80,10 +80,11 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
       // Another one of that name is heard only when this one has failed, of which word may come later.
       Member& one = members_[static_cast<std::size_t>(member)];
       const Speaker ready{dds::prefixOf(sample.writer), status.pid()};
-      if (one.speaker.pid == 0 || one.is_lost) {
-        one.is_new = one.speaker.prefix != ready.prefix;
+      if (one.speaker.pid == 0) {
         one.speaker = ready;
         memberFound(member);
+      } else if (one.is_lost) {
+        becomes(one, ready);
       } else if (one.speaker.prefix != ready.prefix) {
         one.successor = ready;
       }
@@ -97,13 +98,15 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
     Member& one = members_[static_cast<std::size_t>(member)];
     if (one.speaker.pid != status.pid()) return;  // not the one that speaks for it
     memberLost(member, status.text().c_str());
-    if (one.successor.pid != 0) {
-      one.speaker = std::exchange(one.successor, {});
-      one.is_new = true;
-      memberFound(member);
-    }
+    if (one.successor.pid != 0) becomes(one, std::exchange(one.successor, {}));
     proceed();
   }
+}
+
+/// Another process from here on. It returns when it has computed a step, and with that has said what its law is.
+void Plant::becomes(Member& member, const Speaker& speaker) {
+  member.is_new = member.speaker.prefix != speaker.prefix;
+  member.speaker = speaker;
 }
 
 /// Whoever failed and lives goes on computing: it is eligible again once it has answered a later step. As holder it
@@ -115,8 +118,9 @@ void Plant::onControllerStatus(const msg::ControllerStatus& status, const dds::R
   if (member == kBrake) return newcomerStandsBy(status, sample);
   if (!speaksFor(member, sample)) return;
   if (const LawInfo* law = lawCalled(status.law().c_str())) arbiter_.memberChanged(member, law->requires_contact);
-  const bool is_lost = members_[static_cast<std::size_t>(member)].is_lost;
-  if (is_lost && arbiter_.hasFailed(member) && status.step() > arbiter_.failedAt(member)) memberFound(member);
+  const Member& one = members_[static_cast<std::size_t>(member)];
+  const bool is_past_it = one.is_new || status.step() > arbiter_.failedAt(member);
+  if (one.is_lost && arbiter_.hasFailed(member) && is_past_it) memberFound(member);
 }
 
 /// A controller that the scenario did not have computes along: from now on the baton may go to it.

@@ -1,4 +1,4 @@
-// What the plant says besides the state of each step: plans and outcomes of handovers, how the run stands.
+// How the run stands, as the plant says it, and the timers that make it look.
 #include "plant.hpp"
 
 namespace baton {

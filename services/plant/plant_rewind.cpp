@@ -81,7 +81,7 @@ void Plant::finishReset() {
   contact_ = Contact{};
   effort_.setZero();
   chain_hash_ = 0;
-  missed_ = missed_in_a_row_ = 0;
+  missed_ = missed_in_a_row_ = silent_in_a_row_ = 0;
   warned_step_ = kNever;
   timing_ = {};
   started_ns_ = steadyNow();

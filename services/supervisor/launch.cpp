@@ -54,12 +54,13 @@ msg::LaunchReply Supervisor::startController(const msg::LaunchRequest& request) 
         parseScenario(scenario_.file, withController(scenario_.text, name, law, request.parameters().c_str()),
                       scenario_.robot_file, scenario_.robot_text);
     changed.recording.enabled = scenario_.recording.enabled;  // which the command line may have turned off
+    (void)changed.controller(name);                           // from here on nothing is refused any more
     keepExperiment(deployment_.info, changed);
     scenario_ = std::move(changed);
     start("controller", name, scenario_.controller(name).law);
     return acceptance(runningChild(name)->pid());
-  } catch (const Error& error) {
-    return refusal(error.what());
+  } catch (const std::exception& error) {
+    return refusal(error.what());  // whatever is wrong with what was asked for, the run goes on
   }
 }
 
@@ -68,7 +69,10 @@ msg::LaunchReply Supervisor::stopController(const msg::LaunchRequest& request) {
   Child* child = runningChild(name);
   if (child == nullptr) return refusal("no controller called " + name + " runs");
   if (roles_[name] != "controller") return refusal(name + " is no controller; `baton down` ends the run");
-  if (lastSimStatus().holder() == name) return refusal(name + " holds the baton: hand it over first");
+  const msg::BatonStatus baton = lastBatonStatus();
+  if (baton.holder() == name) return refusal(name + " holds the baton: hand it over first");
+  if (baton.incoming() == name)
+    return refusal(name + " is about to take over, at step " + std::to_string(baton.at_step()));
   const bool was_asked = !asked_to_end_.insert(name).second;
   child->signal(SIGCONT);
   child->signal(was_asked ? SIGKILL : SIGTERM);

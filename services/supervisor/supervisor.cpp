@@ -46,6 +46,9 @@ Supervisor::Supervisor(Service& service, Deployment deployment)
   service.input(dds::topics::kTimingStatus, {}, [this](const msg::TimingStatus& status, const dds::RawSample& sample) {
     if (!service_.participant().isSecondCopy(sample.writer)) timing_ = status;
   });
+  service.input(dds::topics::kBatonStatus, {}, [this](const msg::BatonStatus& status, const dds::RawSample& sample) {
+    if (!service_.participant().isSecondCopy(sample.writer)) baton_ = status;
+  });
   service.input(dds::topics::kRecorderStatus, {},
                 [this](const msg::RecorderStatus& status, const dds::RawSample&) { recorder_ = status; });
   service.input(dds::topics::kSwapOutcome, {}, [this](const msg::SwapOutcome& outcome, const dds::RawSample&) {
@@ -156,6 +159,11 @@ void Supervisor::onSimStatus(const msg::SimStatus& status) {
 msg::SimStatus Supervisor::lastSimStatus() {
   const std::lock_guard lock(service_.mutex());
   return sim_;
+}
+
+msg::BatonStatus Supervisor::lastBatonStatus() {
+  const std::lock_guard lock(service_.mutex());
+  return baton_;
 }
 
 void Supervisor::childEnded(Child& child, const Child::End& end) {

@@ -48,6 +48,7 @@ class Supervisor {
   [[nodiscard]] Child* runningChild(const std::string& name);
   void onSimStatus(const msg::SimStatus& status);
   [[nodiscard]] msg::SimStatus lastSimStatus();
+  [[nodiscard]] msg::BatonStatus lastBatonStatus();
   void onSignal();
   void runIsOver();
   void stopChildren();
@@ -75,6 +76,7 @@ class Supervisor {
   std::atomic<double> startup_s_{-1.0};
   msg::SimStatus sim_;
   msg::TimingStatus timing_;
+  msg::BatonStatus baton_;
   msg::RecorderStatus recorder_;
   std::vector<msg::SwapOutcome> swaps_;
   std::vector<msg::SwapReport> reports_;

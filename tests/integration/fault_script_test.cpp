@@ -90,11 +90,11 @@ INSTANTIATE_TEST_SUITE_P(
         HolderFault{"killed", "faults: [{do: kill, service: impedance, at_s: 0.2}]\n", "signal 9"},
         HolderFault{"stopped_for_good",
                     "late: {policy: fallback, after_s: 3}\nfaults: [{do: stop, service: impedance, at_s: 0.2}]\n",
-                    "step"},
+                    "silent for too long"},
         HolderFault{"dropped",
                     "late: {policy: fallback, after_s: 3}\n"
                     "faults: [{do: drop, service: impedance, topic: joint_command, at_s: 0.2}]\n",
-                    "step"}),
+                    "silent for too long"}),
     [](const auto& fault) { return fault.param.name; });
 
 TEST(FaultScript, WhatOnlyTakesTimeChangesNothingInLockstep) {

@@ -79,7 +79,6 @@ TEST(Fault, AHolderThatDiesLosesTheBatonToTheFallback) {
   const Bench bench;
   const LiveRun run(bench, endlessContact("baton: {fallback: [force, pd]}\n"));
   run.waitForStep(200);
-  // Only what is fit may take over: force out of contact is not, and in contact it is.
   ASSERT_EQ(kill(run.pidOf("tracking"), SIGKILL), 0);
   EXPECT_TRUE(eventually([&] {
     const std::string holder = bench.batonJson({"status", "--json"}).at("holder");
@@ -94,6 +93,13 @@ TEST(Fault, AHolderThatDiesLosesTheBatonToTheFallback) {
   EXPECT_EQ(swap.at("outgoing"), "tracking");
   EXPECT_NE(swap.at("reason").get<std::string>().find("failover"), std::string::npos);
   for (const double change : swap.at("applied_effort_step")) EXPECT_LT(std::abs(change), 0.5);
+  // Only what is fit may take over: force out of contact is not, and in contact it is.
+  const std::uint64_t failed_at = swap.at("decided_at_step");
+  const auto contacts = decodeStream<msg::Contact>(readStreams(run.recording)[{"contact", "environment"}]);
+  const auto contact =
+      std::find_if(contacts.begin(), contacts.end(), [&](const msg::Contact& one) { return one.step() == failed_at; });
+  ASSERT_NE(contact, contacts.end());
+  EXPECT_EQ(swap.at("incoming"), contact->penetration() > 0.0 ? "force" : "pd") << swap;
 }
 
 /// A second copy of one of the run's services, started by hand.

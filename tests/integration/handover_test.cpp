@@ -37,6 +37,19 @@ bool says(const nlohmann::json& text, const std::string& what) {
   return text.get<std::string>().find(what) != std::string::npos;
 }
 
+TEST(Handover, OfManyForTheSameStepEachIsAnswered) {
+  const Bench bench;
+  std::string swaps = "swaps:\n";
+  for (int i = 0; i < 40; ++i) swaps += "  - {at_s: 0.15, to: tracking, expect: any}\n";  // holds it already
+  swaps += "  - {at_s: 0.15, to: impedance, expect: any}\n";
+  std::string text = shortContact();
+  text.erase(text.find("swaps:"));
+  const nlohmann::json result = bench.batonJson({"run", bench.write("many.yaml", text + swaps), "--json"});
+  ASSERT_EQ(result.at("exit_code"), 0) << result;
+  ASSERT_EQ(result.at("swaps").size(), 41U);
+  EXPECT_TRUE(result.at("swaps").back().at("done")) << result.at("swaps").back();
+}
+
 TEST(Handover, ADryRunTellsWhatWouldComeOfItAndNothingHappens) {
   const Bench bench;
   const LiveRun run(bench, atRest());

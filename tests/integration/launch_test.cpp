@@ -61,6 +61,25 @@ TEST(Launch, AnotherLawOrAnotherProgramReplacesOneThatStandsBy) {
   EXPECT_TRUE(bench.batonJson({"swap", "pd", "--force", "--json"}).at("done"));
   EXPECT_EQ(bench.batonJson({"status", "--json"}).at("holder"), "pd");
   EXPECT_TRUE(bench.batonJson({"down", "--json"}).at("recording").at("complete"));
+  const Finished repeated = bench.baton({"rerun", run.recording});
+  EXPECT_EQ(repeated.exit_code, 0) << repeated.out << repeated.err;
+}
+
+TEST(Launch, WhoHasBeenAskedUnderAnotherLawCannotBeRepeated) {
+  const Bench bench;
+  // At rest where it touches nothing: no place for a force law, but one for what comes under its name.
+  std::string scenario = endlessContact("rate: 1\n");
+  const std::string way = "    - {time_s: 0.2, position: [pi/6, 0.2, 0.1]}\n";
+  scenario.erase(scenario.find(way), way.size());
+  const LiveRun run(bench, scenario);
+  EXPECT_FALSE(bench.batonJson({"swap", "force", "--json"}).at("done"));
+  ASSERT_TRUE(bench.batonJson({"controller", "stop", "force", "--json"}).at("done"));
+  ASSERT_TRUE(bench.batonJson({"controller", "start", "force", "--law", "impedance", "--json"}).at("done"));
+  EXPECT_TRUE(bench.batonJson({"swap", "force", "--force", "--json"}).at("done"));
+  std::ignore = bench.batonJson({"down", "--json"});
+  const Finished again = bench.baton({"rerun", run.recording});
+  EXPECT_EQ(again.exit_code, 2) << again.out << again.err;
+  EXPECT_NE(again.err.find("asked to take it"), std::string::npos) << again.err;
 }
 
 TEST(Launch, WhatCannotBeIsRefusedWithTheReasonAndTheRunGoesOn) {
@@ -79,6 +98,9 @@ TEST(Launch, WhatCannotBeIsRefusedWithTheReasonAndTheRunGoesOn) {
   refused({"start", "fresh", "--law", "joint_pd", "--set", "kp=-1"}, "kp");
   refused({"start", "fresh", "--law", "joint_pd", "--set", "kq=1"}, "kq");
   refused({"start", "plant", "--law", "joint_pd"}, "plant");
+  refused({"start", "\"", "--law", "joint_pd"}, "a name of 1 to 31");
+  refused({"start", "x, parameters: {kp: 3}", "--law", "joint_pd"}, "a name of 1 to 31");
+  refused({"start", "fresh", "--law", "joint_pd", "--set", "kp.x.y=1"}, "kp");
   refused({"stop", "trajectory"}, "no controller");
   refused({"stop", "nobody"}, "nobody");
   EXPECT_EQ(bench.batonJson({"status", "--json"}).at("state"), "running");

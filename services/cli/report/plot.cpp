@@ -303,7 +303,14 @@ const std::vector<std::string>& plotKinds() {
 
 void draw(const fs::path& stem, const std::string& title, const std::string& kind, const std::vector<LabelledRun>& runs,
           double until_s) {
-  draw(stem, title, panels(kind, runs), runs, until_s);
+  std::vector<Panel> all = panels(kind, runs);
+  for (Panel& panel : all) {
+    for (Curve& curve : panel.curves) {
+      const auto steps = static_cast<Eigen::Index>(std::ceil(until_s / curve.trace->scenario.stepSeconds())) + 1;
+      if (until_s > 0.0 && steps < curve.y.size()) curve.y.conservativeResize(steps);
+    }
+  }
+  draw(stem, title, all, runs);
 }
 
 void draw(const fs::path& stem, const std::string& title, const std::vector<Panel>& panels,

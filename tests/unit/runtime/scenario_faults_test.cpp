@@ -33,6 +33,14 @@ faults:
 
 Scenario parse(const std::string& text) { return rppScenario("faulty.yaml", text); }
 
+TEST(ScenarioFaults, NothingIsSavedWhereAMessageIsStuck) {
+  const Scenario scenario = parse(replaced(kFaulty, "do: nan, service: first, topic: joint_command, at_s: 1",
+                                           "do: stuck, service: environment, topic: contact, at_s: 1, until_s: 1.5") +
+                                  "recording: {checkpoint_s: 0.25}\n");
+  for (const std::uint64_t step : {250U, 750U, 1500U, 5000U}) EXPECT_TRUE(scenario.hasCheckpointAt(step)) << step;
+  for (const std::uint64_t step : {0U, 1000U, 1250U, 1501U}) EXPECT_FALSE(scenario.hasCheckpointAt(step)) << step;
+}
+
 TEST(ScenarioFaults, AreReadAsTheyAreWritten) {
   const std::vector<Fault> faults = parse(kFaulty).faults;
   ASSERT_EQ(faults.size(), 7U);

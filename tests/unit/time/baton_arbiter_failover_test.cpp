@@ -1,9 +1,14 @@
 /// What happens to the baton when controllers fail, before, during and after a handover.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstddef>
+#include <span>
 #include <string>
+#include <utility>
 
 #include "arbiter_run.hpp"
+#include "base/state_archive.hpp"
 #include "time/baton_arbiter.hpp"
 
 namespace baton::test {
@@ -219,6 +224,35 @@ TEST(Failover, AFailureBeforeTheFirstStepIsDecidedThere) {
   ASSERT_TRUE(action);
   EXPECT_EQ(action->plan.decided_at_step, 0u);
   EXPECT_EQ(action->plan.at_step, 0u);
+}
+
+TEST(Failover, ACheckpointKnowsItsMembersByName) {
+  ArbiterRun run;
+  run.runTo(10);
+  run.fail(kSecond);
+  run.arbiter.memberJoined({"late"});
+  std::array<std::byte, 1024> room{};
+  StateArchive saved = StateArchive::into(room);
+  run.arbiter.archive(saved);
+  const auto bytes = std::span(std::as_const(room)).first(saved.size());
+
+  ArbiterConfig other = fourControllers();
+  other.members = {{"late"}, {"spare"}, {"second"}, {"force", true}, {"later"}, {"first"}};
+  other.fallback = {};
+  BatonArbiter restored(other);
+  StateArchive archive = StateArchive::from(bytes);
+  restored.archive(archive);
+  EXPECT_TRUE(archive.isWhole());
+  EXPECT_EQ(restored.holder(), 5) << "first";
+  for (int member = 0; member < 6; ++member) EXPECT_EQ(restored.hasFailed(member), member == 2) << member;
+  EXPECT_EQ(restored.failedAt(2), 10U);
+
+  other.members.pop_back();
+  other.holder = 0;
+  BatonArbiter lacking(other);
+  StateArchive refused = StateArchive::from(bytes);
+  lacking.archive(refused);
+  EXPECT_FALSE(refused.isGood()) << "it has no first";
 }
 
 }  // namespace
