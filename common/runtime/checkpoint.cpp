@@ -3,23 +3,14 @@
 #include <algorithm>
 #include <set>
 
-#include "mcap/reader.hpp"
 #include "mcap/writer.hpp"
 #include "msg/idl_text.hpp"
+#include "runtime/recorded_messages.hpp"
 
 namespace baton {
 namespace {
 
 constexpr const char* kTopic = dds::topics::kCheckpoint.name;
-
-template <class F>
-void forEachCheckpoint(const mcap::Reader& reader, std::uint64_t begin_ns, const F& f) {
-  msg::Checkpoint message;
-  reader.forEachMessage({.topics = {kTopic}, .start_time_ns = begin_ns, .order = mcap::MessageFilter::Order::kFile},
-                        [&](const mcap::MessageView& view) {
-                          if (dds::decode(view.data, message)) f(message);
-                        });
-}
 
 }  // namespace
 
@@ -30,7 +21,7 @@ CheckpointSet newestCheckpoint(const std::filesystem::path& recording, std::uint
   const auto counts = [&](const msg::Checkpoint& one) {
     return one.step() <= at_step && std::find(services.begin(), services.end(), one.name().c_str()) != services.end();
   };
-  forEachCheckpoint(reader, begin_ns, [&](const msg::Checkpoint& one) {
+  forEachMessageOf(dds::topics::kCheckpoint, reader, begin_ns, [&](const msg::Checkpoint& one, const auto&) {
     if (counts(one)) parts[one.step()].insert(one.name().c_str());
   });
   const auto newest = std::find_if(parts.rbegin(), parts.rend(),
@@ -38,7 +29,7 @@ CheckpointSet newestCheckpoint(const std::filesystem::path& recording, std::uint
   CheckpointSet set;
   if (newest == parts.rend()) return set;
   set.step = newest->first;
-  forEachCheckpoint(reader, begin_ns, [&](const msg::Checkpoint& one) {
+  forEachMessageOf(dds::topics::kCheckpoint, reader, begin_ns, [&](const msg::Checkpoint& one, const auto&) {
     if (one.step() == set.step && counts(one)) set.states[one.name().c_str()] = one.state();
   });
   return set;
@@ -68,7 +59,7 @@ void writeCheckpoint(const std::filesystem::path& file, const CheckpointSet& set
 CheckpointSet readCheckpoint(const std::filesystem::path& file) {
   const mcap::Reader reader(file);
   CheckpointSet set;
-  forEachCheckpoint(reader, 0, [&](const msg::Checkpoint& one) {
+  forEachMessageOf(dds::topics::kCheckpoint, reader, 0, [&](const msg::Checkpoint& one, const auto&) {
     if (!set.states.empty() && one.step() != set.step) {
       throw UsageError(file.string() + ": expected the checkpoints of one step, found those of steps " +
                        std::to_string(set.step) + " and " + std::to_string(one.step()));

@@ -1,23 +1,13 @@
 #include "bag_hash.hpp"
 
 #include "base/error.hpp"
-#include "dds/codec.hpp"
-#include "dds/topics.hpp"
-#include "mcap/reader.hpp"
 #include "report/recording.hpp"
+#include "runtime/recorded_messages.hpp"
 
 namespace baton {
 namespace {
 
-/// Calls f(message, hash of its payload) for every message of the topic.
-template <class T, class F>
-void forEach(const mcap::Reader& reader, std::uint64_t begin_ns, const dds::Topic<T>& topic, const F& f) {
-  T message;
-  reader.forEachMessage({.topics = {topic.name}, .start_time_ns = begin_ns, .order = mcap::MessageFilter::Order::kFile},
-                        [&](const mcap::MessageView& view) {
-                          if (dds::decode(view.data, message)) f(message, dds::chainHash(0, view.data));
-                        });
-}
+std::uint64_t hashOf(const mcap::MessageView& view) { return dds::chainHash(0, view.data); }
 
 /// Whether the step's payloads, or some of them, give this hash.
 bool gives(const HashedRun::Step& step, std::uint64_t next_chain) {
@@ -46,26 +36,29 @@ HashedRun hashRun(const std::filesystem::path& file) {
   const mcap::Reader reader(file);
   const std::uint64_t begin_ns = lastTakeBegin(reader);
   HashedRun run;
-  forEach(reader, begin_ns, dds::topics::kPlantState, [&](const msg::PlantState& state, std::uint64_t hash) {
+  forEachMessageOf(dds::topics::kPlantState, reader, begin_ns, [&](const msg::PlantState& state, const auto& view) {
     HashedRun::Step& step = run.steps[state.step()];
-    step.hashes.state = hash;
+    step.hashes.state = hashOf(view);
     step.chain = state.chain_hash();
     step.holder = state.holder().c_str();
   });
   if (run.steps.empty()) throw UsageError(file.string() + ": expected the states of a run, found none");
-  forEach(reader, begin_ns, dds::topics::kContact, [&](const msg::Contact& contact, std::uint64_t hash) {
-    if (const auto step = run.steps.find(contact.step()); step != run.steps.end()) step->second.hashes.contact = hash;
+  forEachMessageOf(dds::topics::kContact, reader, begin_ns, [&](const msg::Contact& contact, const auto& view) {
+    if (const auto step = run.steps.find(contact.step()); step != run.steps.end())
+      step->second.hashes.contact = hashOf(view);
   });
-  forEach(reader, begin_ns, dds::topics::kReference, [&](const msg::Reference& reference, std::uint64_t hash) {
-    if (const auto step = run.steps.find(reference.step()); step != run.steps.end()) step->second.reference = hash;
+  forEachMessageOf(dds::topics::kReference, reader, begin_ns, [&](const msg::Reference& reference, const auto& view) {
+    if (const auto step = run.steps.find(reference.step()); step != run.steps.end())
+      step->second.reference = hashOf(view);
   });
-  forEach(reader, begin_ns, dds::topics::kJointCommand, [&](const msg::JointCommand& command, std::uint64_t hash) {
-    const auto step = run.steps.find(command.step());
-    if (step == run.steps.end()) return;
-    // At the first step of a new holder the outgoing one commands as well.
-    dds::StepHashes& hashes = step->second.hashes;
-    (step->second.holder == command.controller().c_str() ? hashes.command : hashes.outgoing_command) = hash;
-  });
+  forEachMessageOf(
+      dds::topics::kJointCommand, reader, begin_ns, [&](const msg::JointCommand& command, const auto& view) {
+        const auto step = run.steps.find(command.step());
+        if (step == run.steps.end()) return;
+        // At the first step of a new holder the outgoing one commands as well.
+        dds::StepHashes& hashes = step->second.hashes;
+        (step->second.holder == command.controller().c_str() ? hashes.command : hashes.outgoing_command) = hashOf(view);
+      });
   return run;
 }
 

@@ -7,11 +7,9 @@
 #include <map>
 
 #include "base/error.hpp"
-#include "dds/codec.hpp"
-#include "dds/topics.hpp"
-#include "mcap/reader.hpp"
 #include "messages/parameters.hpp"
 #include "report/recording.hpp"
+#include "runtime/recorded_messages.hpp"
 #include "runtime/scenario_edit.hpp"
 
 namespace baton {
@@ -21,15 +19,6 @@ namespace fs = std::filesystem;
 std::string needed(const mcap::Reader& reader, const std::string& name, const fs::path& file) {
   if (auto text = attachmentText(reader, name)) return *text;
   throw UsageError(file.string() + ": expected the recording of a run, with its " + name + ", found none");
-}
-
-template <class T, class F>
-void forEach(const mcap::Reader& reader, std::uint64_t begin_ns, const dds::Topic<T>& topic, const F& f) {
-  T message;
-  reader.forEachMessage({.topics = {topic.name}, .start_time_ns = begin_ns, .order = mcap::MessageFilter::Order::kFile},
-                        [&](const mcap::MessageView& view) {
-                          if (dds::decode(view.data, message)) f(message);
-                        });
 }
 
 std::string listText(const std::vector<std::string>& entries) { return fmt::format("[{}]", fmt::join(entries, ", ")); }
@@ -175,11 +164,10 @@ using Relaunches = std::map<std::string, std::uint64_t>;
 /// stand by, nobody feels them.
 std::string withLaunches(const mcap::Reader& reader, std::string text, const fs::path& file, Relaunches& relaunches) {
   std::map<std::uint64_t, msg::LaunchRequest> requests;
-  forEach(reader, 0, dds::topics::kLaunchRequest,
-          [&](const msg::LaunchRequest& request) { requests[request.request_id()] = request; });
-  msg::LaunchReply reply;
-  reader.forEachMessage({.topics = {dds::topics::kLaunchReply.name}}, [&](const mcap::MessageView& view) {
-    if (!dds::decode(view.data, reply) || !reply.accepted() || !requests.contains(reply.request_id())) return;
+  forEachMessageOf(dds::topics::kLaunchRequest, reader, 0,
+                   [&](const msg::LaunchRequest& request, const auto&) { requests[request.request_id()] = request; });
+  forEachMessageOf(dds::topics::kLaunchReply, reader, 0, [&](const msg::LaunchReply& reply, const auto& view) {
+    if (!reply.accepted() || !requests.contains(reply.request_id())) return;
     const msg::LaunchRequest& request = requests.at(reply.request_id());
     const std::string name = request.name().c_str();
     if (request.action() != msg::LAUNCH_START) return;
@@ -213,23 +201,22 @@ RecordedRun readRecordedRun(const fs::path& file) {
   run.scenario =
       parseScenario(file.string() + "#scenario.yaml", run.scenario_text, file.string() + "#robot.yaml", run.robot_text);
   bool has_states = false;
-  forEach(reader, take.begin_ns, dds::topics::kPlantState, [&](const msg::PlantState& state) {
+  forEachMessageOf(dds::topics::kPlantState, reader, take.begin_ns, [&](const msg::PlantState& state, const auto&) {
     run.first_step = has_states ? std::min(run.first_step, state.step()) : state.step();
     run.last_step = std::max(run.last_step, state.step());
     has_states = true;
   });
   if (!has_states) throw UsageError(file.string() + ": expected the states of a run, found none");
   // By their take, not by when they came: what is decided at its first step may be recorded before its begin.
-  msg::Decision decision;
-  reader.forEachMessage({.topics = {dds::topics::kDecision.name}, .order = mcap::MessageFilter::Order::kFile},
-                        [&](const mcap::MessageView& view) {
-                          if (!dds::decode(view.data, decision) || decision.take() != take.number) return;
-                          const auto relaunched = relaunches.find(decision.controller().c_str());
-                          // What was changed in a law that is not in the scenario any more was felt by nobody.
-                          const bool is_gone = decision.cause() == msg::DECISION_PARAMETERS &&
-                                               relaunched != relaunches.end() && view.log_time_ns < relaunched->second;
-                          if (!is_gone) run.decisions.push_back(decision);
-                        });
+  forEachMessageOf(dds::topics::kDecision, reader, 0,
+                   [&](const msg::Decision& decision, const mcap::MessageView& view) {
+                     if (decision.take() != take.number) return;
+                     const auto relaunched = relaunches.find(decision.controller().c_str());
+                     // What was changed in a law that is not in the scenario any more was felt by nobody.
+                     const bool is_gone = decision.cause() == msg::DECISION_PARAMETERS &&
+                                          relaunched != relaunches.end() && view.log_time_ns < relaunched->second;
+                     if (!is_gone) run.decisions.push_back(decision);
+                   });
   for (const auto& [name, log_time_ns] : relaunches) {
     run.checkpoints_from_ns = std::max(run.checkpoints_from_ns, log_time_ns);
   }
