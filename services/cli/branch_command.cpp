@@ -7,8 +7,6 @@
 #include <memory>
 #include <optional>
 
-#include "dds/codec.hpp"
-#include "mcap/reader.hpp"
 #include "recorded_run.hpp"
 #include "report/recording.hpp"
 #include "run_commands.hpp"
@@ -18,6 +16,7 @@
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/recorded_messages.hpp"
 #include "runtime/scenario_edit.hpp"
 #include "runtime/service_options.hpp"
 
@@ -52,15 +51,11 @@ Fork read(const BranchRequest& request) {
   const std::uint64_t step = stepOf(request, fork.run.scenario);
   bool found = false;
   const mcap::Reader reader(request.recording);
-  reader.forEachMessage({.topics = {dds::topics::kPlantState.name},
-                         .start_time_ns = fork.run.begin_ns,
-                         .order = mcap::MessageFilter::Order::kFile},
-                        [&](const mcap::MessageView& view) {
-                          msg::PlantState state;
-                          if (!dds::decode(view.data, state) || state.step() != step) return;
-                          fork.state = state;
-                          found = true;
-                        });
+  forEachMessageOf(dds::topics::kPlantState, reader, fork.run.begin_ns, [&](const msg::PlantState& state, const auto&) {
+    if (state.step() != step) return;
+    fork.state = state;
+    found = true;
+  });
   if (!found || step >= fork.run.last_step) {
     throw UsageError(request.recording + ": expected a step before its last, " + std::to_string(fork.run.last_step) +
                      ", found " + std::to_string(step));

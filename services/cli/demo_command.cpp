@@ -10,12 +10,10 @@
 #include <vector>
 
 #include "control/parameters.hpp"
-#include "dds/codec.hpp"
-#include "dds/topics.hpp"
-#include "mcap/reader.hpp"
 #include "run_commands.hpp"
 #include "runtime/log.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/recorded_messages.hpp"
 #include "runtime/scenario.hpp"
 
 namespace baton {
@@ -25,10 +23,8 @@ namespace {
 std::map<std::uint64_t, double> contactForce(const std::string& recording) {
   std::map<std::uint64_t, double> force_N;
   const mcap::Reader reader(recording);
-  msg::Contact contact;
-  reader.forEachMessage({.topics = {dds::topics::kContact.name}}, [&](const mcap::MessageView& message) {
-    if (dds::decode(message.data, contact)) force_N[contact.step()] = contact.force()[2];
-  });
+  forEachMessageOf(dds::topics::kContact, reader, 0,
+                   [&](const msg::Contact& contact, const auto&) { force_N[contact.step()] = contact.force()[2]; });
   return force_N;
 }
 

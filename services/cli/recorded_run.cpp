@@ -144,16 +144,13 @@ bool cameToNothing(const std::vector<msg::Decision>& decisions, std::size_t inde
 /// Whether what a controller computes has mattered before that log time: it held the baton, or was asked to take it.
 bool matteredBefore(const mcap::Reader& reader, const std::string& name, std::uint64_t log_time_ns) {
   bool has_mattered = false;
-  msg::PlantState state;
-  msg::SwapPlan plan;
-  reader.forEachMessage(
-      {.topics = {dds::topics::kPlantState.name, dds::topics::kSwapPlan.name}}, [&](const mcap::MessageView& view) {
-        if (has_mattered || view.log_time_ns >= log_time_ns) return;
-        has_mattered =
-            view.channel->topic == dds::topics::kPlantState.name
-                ? dds::decode(view.data, state) && state.holder() == name
-                : dds::decode(view.data, plan) && plan.incoming() == name && plan.phase() != msg::SWAP_FORECAST;
-      });
+  forEachMessageOf(dds::topics::kPlantState, reader, 0, [&](const msg::PlantState& state, const auto& view) {
+    has_mattered = has_mattered || (view.log_time_ns < log_time_ns && state.holder() == name);
+  });
+  forEachMessageOf(dds::topics::kSwapPlan, reader, 0, [&](const msg::SwapPlan& plan, const auto& view) {
+    const bool is_handover = plan.phase() != msg::SWAP_FORECAST;
+    has_mattered = has_mattered || (view.log_time_ns < log_time_ns && is_handover && plan.incoming() == name);
+  });
   return has_mattered;
 }
 

@@ -16,15 +16,9 @@ namespace {
 /// The short scenario at rest in free space, at the pace of a clock, without an end. `sagging` lacks the weight's
 /// torque.
 std::string atRest(const std::string& extra = "") {
-  std::string text = shortContact();
-  text.erase(text.find("swaps:"));  // the last key
-  const auto replace = [&](const std::string& from, const std::string& to) {
-    text.replace(text.find(from), from.size(), to);
-  };
-  replace("duration_s: 0.5\n", "rate: 1\n");
-  replace("    - {time_s: 0.2, position: [pi/6, 0.2, 0.1]}\n", "");
-  replace("active: tracking\n", "  - {name: sagging, law: joint_pd, parameters: {gravity: none}}\nactive: tracking\n");
-  return text + extra;
+  std::string text = restingContact("rate: 1\n" + extra);
+  return text.insert(text.find("active: tracking\n"),
+                     "  - {name: sagging, law: joint_pd, parameters: {gravity: none}}\n");
 }
 
 double largest(const nlohmann::json& numbers) {
@@ -42,9 +36,8 @@ TEST(Handover, OfManyForTheSameStepEachIsAnswered) {
   std::string swaps = "swaps:\n";
   for (int i = 0; i < 40; ++i) swaps += "  - {at_s: 0.15, to: tracking, expect: any}\n";  // holds it already
   swaps += "  - {at_s: 0.15, to: impedance, expect: any}\n";
-  std::string text = shortContact();
-  text.erase(text.find("swaps:"));
-  const nlohmann::json result = bench.batonJson({"run", bench.write("many.yaml", text + swaps), "--json"});
+  const std::string scenario = endlessContact("duration_s: 0.5\n" + swaps);
+  const nlohmann::json result = bench.batonJson({"run", bench.write("many.yaml", scenario), "--json"});
   ASSERT_EQ(result.at("exit_code"), 0) << result;
   ASSERT_EQ(result.at("swaps").size(), 41U);
   EXPECT_TRUE(result.at("swaps").back().at("done")) << result.at("swaps").back();

@@ -68,10 +68,7 @@ TEST(Launch, AnotherLawOrAnotherProgramReplacesOneThatStandsBy) {
 TEST(Launch, WhoHasBeenAskedUnderAnotherLawCannotBeRepeated) {
   const Bench bench;
   // At rest where it touches nothing: no place for a force law, but one for what comes under its name.
-  std::string scenario = endlessContact("rate: 1\n");
-  const std::string way = "    - {time_s: 0.2, position: [pi/6, 0.2, 0.1]}\n";
-  scenario.erase(scenario.find(way), way.size());
-  const LiveRun run(bench, scenario);
+  const LiveRun run(bench, restingContact("rate: 1\n"));
   EXPECT_FALSE(bench.batonJson({"swap", "force", "--json"}).at("done"));
   ASSERT_TRUE(bench.batonJson({"controller", "stop", "force", "--json"}).at("done"));
   ASSERT_TRUE(bench.batonJson({"controller", "start", "force", "--law", "impedance", "--json"}).at("done"));

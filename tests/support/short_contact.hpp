@@ -44,4 +44,11 @@ inline constexpr int kSecondSwap = 700;
   return text + extra;
 }
 
+/// The same at rest, where it touches nothing.
+[[nodiscard]] inline std::string restingContact(const std::string& extra = "") {
+  std::string text = endlessContact(extra);
+  const std::string way = "    - {time_s: 0.2, position: [pi/6, 0.2, 0.1]}\n";
+  return text.erase(text.find(way), way.size());
+}
+
 }  // namespace baton::test

@@ -13,7 +13,7 @@
 #include "control/nearest_name.hpp"
 #include "gnuplot.hpp"
 #include "theory.hpp"
-#include "trajectory/trajectory.hpp"
+#include "theory_tools.hpp"
 
 namespace baton {
 namespace {
@@ -70,9 +70,7 @@ std::vector<Panel> goalErrorPanels(const std::vector<LabelledRun>& runs, const s
   goals.reserve(runs.size());
   for (const LabelledRun& run : runs) {
     const Trace& trace = *run.trace;
-    TrajectorySpec quiet = trace.scenario.trajectory;
-    quiet.noise.reset();
-    const Trajectory trajectory(trace.scenario.robot, quiet);
+    const Trajectory trajectory = theory::quietTrajectory(trace.scenario);
     Reference wanted;
     Eigen::MatrixXd& goal = goals.emplace_back(trace.q.rows(), trace.steps());
     for (Eigen::Index k = 0; k < trace.steps(); ++k) {
@@ -304,10 +302,12 @@ const std::vector<std::string>& plotKinds() {
 void draw(const fs::path& stem, const std::string& title, const std::string& kind, const std::vector<LabelledRun>& runs,
           double until_s) {
   std::vector<Panel> all = panels(kind, runs);
-  for (Panel& panel : all) {
-    for (Curve& curve : panel.curves) {
-      const auto steps = static_cast<Eigen::Index>(std::ceil(until_s / curve.trace->scenario.stepSeconds())) + 1;
-      if (until_s > 0.0 && steps < curve.y.size()) curve.y.conservativeResize(steps);
+  if (until_s > 0.0) {
+    for (Panel& panel : all) {
+      for (Curve& curve : panel.curves) {
+        const auto steps = static_cast<Eigen::Index>(std::ceil(until_s / curve.trace->scenario.stepSeconds())) + 1;
+        curve.y.conservativeResize(std::min(steps, curve.y.size()));
+      }
     }
   }
   draw(stem, title, all, runs);

@@ -38,7 +38,7 @@ struct Panel {
 /// the same panels, up to `until_s` (0: to their end). Throws UsageError for an unknown kind, UnavailableError when
 /// gnuplot is missing or fails.
 void draw(const std::filesystem::path& stem, const std::string& title, const std::string& kind,
-          const std::vector<LabelledRun>& runs, double until_s = 0.0);
+          const std::vector<LabelledRun>& runs, double until_s);
 
 /// The same of curves that were made elsewhere; handovers and contacts of `runs` are marked.
 void draw(const std::filesystem::path& stem, const std::string& title, const std::vector<Panel>& panels,

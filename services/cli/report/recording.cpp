@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "dds/codec.hpp"
-#include "dds/topics.hpp"
+#include "runtime/recorded_messages.hpp"
 
 namespace baton {
 
@@ -32,14 +31,10 @@ std::uint64_t lastTakeBegin(const mcap::Reader& reader) { return lastTake(reader
 
 Take lastTake(const mcap::Reader& reader) {
   Take last;
-  reader.forEachMessage({.topics = {dds::topics::kRewind.name}, .order = mcap::MessageFilter::Order::kFile},
-                        [&](const mcap::MessageView& view) {
-                          msg::Rewind rewind;
-                          const bool commits = dds::decode(view.data, rewind) && rewind.phase() == msg::REWIND_COMMIT;
-                          if (commits && view.log_time_ns >= last.begin_ns) {
-                            last = {.number = rewind.take(), .begin_ns = view.log_time_ns};
-                          }
-                        });
+  forEachMessageOf(dds::topics::kRewind, reader, 0, [&](const msg::Rewind& rewind, const auto& view) {
+    if (rewind.phase() != msg::REWIND_COMMIT || view.log_time_ns < last.begin_ns) return;
+    last = {.number = rewind.take(), .begin_ns = view.log_time_ns};
+  });
   return last;
 }
 

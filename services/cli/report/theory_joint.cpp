@@ -107,9 +107,7 @@ NoiseRms noiseRms(const Trace& run) {
   expectLaw(run, {"joint_pd", "joint_inverse_dynamics"});
   const Scenario& scenario = run.scenario;
   const int n = scenario.robot.size();
-  TrajectorySpec quiet = scenario.trajectory;
-  quiet.noise.reset();
-  const Trajectory noisy(scenario.robot, scenario.trajectory), smooth(scenario.robot, quiet);
+  const Trajectory noisy(scenario.robot, scenario.trajectory), smooth = quietTrajectory(scenario);
   Reference goal, wanted;
   smooth.evaluate(run.time(run.last()), goal);
   const JointVector kp = gain<JointVector>(run, "kp"), kd = gain<JointVector>(run, "kd");

@@ -44,6 +44,12 @@ Reference referenceAt(const Trace& trace, Eigen::Index step) {
 
 Reference goalOf(const Trace& trace) { return referenceAt(trace, restStep(trace)); }
 
+Trajectory quietTrajectory(const Scenario& scenario) {
+  TrajectorySpec quiet = scenario.trajectory;
+  quiet.noise.reset();
+  return {scenario.robot, quiet};
+}
+
 Vector3 wallForce(const Scenario& scenario, const Vector3& p) {
   Vector3 force = Vector3::Zero();
   for (const PlaneSpec& wall : scenario.walls) {

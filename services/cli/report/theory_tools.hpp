@@ -8,6 +8,7 @@
 
 #include "control/parameters.hpp"
 #include "theory.hpp"
+#include "trajectory/trajectory.hpp"
 
 namespace baton::theory {
 
@@ -28,6 +29,8 @@ template <typename Vector>
 /// The reference at the time of a step, from the scenario.
 [[nodiscard]] Reference referenceAt(const Trace& trace, Eigen::Index step);
 [[nodiscard]] Reference goalOf(const Trace& trace);
+/// What is desired without the noise on it.
+[[nodiscard]] Trajectory quietTrajectory(const Scenario& scenario);
 /// Wall by wall, stiffness x depth along the normal: h_e at rest [N].
 [[nodiscard]] Vector3 wallForce(const Scenario& scenario, const Vector3& p);
 

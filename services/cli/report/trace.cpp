@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "dds/codec.hpp"
-#include "dds/topics.hpp"
 #include "recording.hpp"
 #include "robot/kinematics.hpp"
+#include "runtime/recorded_messages.hpp"
 
 namespace baton {
 namespace {
@@ -30,16 +29,11 @@ struct Stretch {
 Stretch statesIn(const mcap::Reader& reader, std::uint64_t begin_ns, std::int64_t step_ns,
                  const std::filesystem::path& file) {
   std::uint64_t count = 0, first = 0, last = 0;
-  reader.forEachMessage({.topics = {dds::topics::kPlantState.name},
-                         .start_time_ns = begin_ns,
-                         .order = mcap::MessageFilter::Order::kFile},
-                        [&](const mcap::MessageView& view) {
-                          msg::PlantState state;
-                          if (!dds::decode(view.data, state)) return;
-                          first = count == 0 ? state.step() : std::min(first, state.step());
-                          last = std::max(last, state.step());
-                          ++count;
-                        });
+  forEachMessageOf(dds::topics::kPlantState, reader, begin_ns, [&](const msg::PlantState& state, const auto&) {
+    first = count == 0 ? state.step() : std::min(first, state.step());
+    last = std::max(last, state.step());
+    ++count;
+  });
   if (count == 0) throw UsageError(file.string() + ": expected states of a plant, found none");
   constexpr std::uint64_t kMostMissing = 10;  // times what is there
   if ((last - first) / kMostMissing > count) {

@@ -53,9 +53,9 @@ class Watch {
 };
 
 TEST(ParticipantTest, AWatchThatIsTakenAwayIsNotCalledAnyMore) {
-  Participant watcher(memberOptions("watcher", "cell"));
-  std::promise<void> entered, let_go;
+  std::promise<void> entered, let_go;  // these outlive the participant that calls back
   std::atomic<int> calls{0}, returns{0};
+  Participant watcher(memberOptions("watcher", "cell"));
   watcher.watchWriters([&](const DiscoveredWriter&) {
     if (++calls == 1) {
       entered.set_value();
