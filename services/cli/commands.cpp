@@ -1,6 +1,6 @@
 #include "commands.hpp"
 
-#include "bag_command.hpp"
+#include "bag/bag_command.hpp"
 #include "baton_commands.hpp"
 #include "branch_command.hpp"
 #include "controller_command.hpp"

@@ -6,7 +6,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "bag_hash.hpp"
+#include "bag/run_hash.hpp"
 #include "recorded_run.hpp"
 #include "run_session.hpp"
 

@@ -1,4 +1,4 @@
-#include "bag_hash.hpp"
+#include "bag/run_hash.hpp"
 
 #include "base/error.hpp"
 #include "report/recording.hpp"

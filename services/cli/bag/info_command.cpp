@@ -1,4 +1,4 @@
-#include "bag_command.hpp"
+#include "bag/subcommands.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "bag_hash.hpp"
 #include "base/error.hpp"
 #include "mcap/reader.hpp"
 #include "runtime/json.hpp"
@@ -234,67 +233,22 @@ nlohmann::ordered_json toJson(const BagSummary& bag) {
   return json;
 }
 
-struct BagRequest {
+struct InfoRequest {
   std::string file;
-  std::string other;  // hash: to compare with
   bool json = false;
 };
 
-/// Prints the hash and says whether the payloads give it.
-ExitCode hash(const BagRequest& request) {
-  const HashedRun run = hashRun(request.file);
-  const std::optional<std::uint64_t> broken = run.firstBroken();
-  nlohmann::ordered_json json{{"file", request.file},
-                              {"hash", std::to_string(run.hash())},
-                              {"first_step", run.steps.begin()->first},
-                              {"last_step", run.steps.rbegin()->first},
-                              {"payloads_agree", !broken}};
-  if (broken) json["first_broken_step"] = *broken;
-  std::string verdict = broken ? "the payloads of step " + std::to_string(*broken) + " do not give the hash after it"
-                               : "the recorded payloads give it, step by step";
-  bool is_good = !broken;
-  if (!request.other.empty()) {
-    const HashedRun other = hashRun(request.other);
-    const Comparison comparison = compare(run, other);
-    const std::optional<Parting>& parting = comparison.parting;
-    const bool is_same = !parting && comparison.steps > 0 && !other.firstBroken();
-    json["same_as"] = {{"file", request.other}, {"same", is_same}, {"steps_compared", comparison.steps}};
-    if (parting) {
-      json["same_as"]["first_different_step"] = parting->step;
-      json["same_as"]["topic"] = parting->topic;
-      verdict += "\ndiffers from " + request.other + " first at step " + std::to_string(parting->step) + " in " +
-                 parting->topic;
-    } else {
-      verdict += "\n" +
-                 (comparison.steps == 0 ? "no step in common with " + request.other
-                                        : "the same as " + request.other + " in the " +
-                                              std::to_string(comparison.steps) + " steps that both have") +
-                 (other.firstBroken() ? ", whose payloads do not give its own hash" : "");
-    }
-    is_good = is_good && is_same;
-  }
-  if (request.json) {
-    std::puts(toText(json).c_str());
-  } else {
-    std::printf("%s of steps %s to %s\n%s\n", json["hash"].get<std::string>().c_str(),
-                json["first_step"].dump().c_str(), json["last_step"].dump().c_str(), verdict.c_str());
-  }
-  return is_good ? ExitCode::kOk : ExitCode::kFailed;
-}
-
 }  // namespace
 
-void addBagCommand(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* bag = app.add_subcommand("bag", "look into a recording");
-  bag->require_subcommand(1);
-  const auto request = std::make_shared<BagRequest>();
-  CLI::App* info = bag->add_subcommand("info", "what a recording is of, what is in it, and whether it is whole");
-  info->footer(
+void addBagInfo(CLI::App& bag, ExitCode& exit_code) {
+  const auto request = std::make_shared<InfoRequest>();
+  CLI::App* command = bag.add_subcommand("info", "what a recording is of, what is in it, and whether it is whole");
+  command->footer(
       "Reads the whole file, so that every checksum is checked and every gap is found.\n"
       "Exit codes: 0 complete, 1 incomplete or cut, 2 damaged or not a recording, 3 cannot be opened.");
-  info->add_option("file", request->file, "recording (MCAP)")->required();
-  info->add_flag("--json", request->json, "as a JSON object");
-  info->callback([request, &exit_code] {
+  command->add_option("file", request->file, "recording (MCAP)")->required();
+  command->add_flag("--json", request->json, "as a JSON object");
+  command->callback([request, &exit_code] {
     const BagSummary summary = summarize(request->file);
     if (request->json) {
       // Text in a recording may come from anywhere.
@@ -304,16 +258,6 @@ void addBagCommand(CLI::App& app, ExitCode& exit_code) {
     }
     exit_code = exitCodeOf(verdictOn(summary));
   });
-  CLI::App* hash_command =
-      bag->add_subcommand("hash", "the hash of a recorded run, computed again from its payloads; two files: compared");
-  hash_command->footer(
-      "Exit codes: 0 the payloads give the hash that the run had, and the other file has the same; 1 otherwise, with "
-      "the "
-      "first step.");
-  hash_command->add_option("file", request->file, "recording of a run (MCAP)")->required();
-  hash_command->add_option("other", request->other, "another one, to compare step by step");
-  hash_command->add_flag("--json", request->json, "as a JSON object");
-  hash_command->callback([request, &exit_code] { exit_code = hash(*request); });
 }
 
 }  // namespace baton

@@ -1,4 +1,4 @@
-/// `baton bag`: what is in a recording, and whether it is whole.
+/// `baton bag`: what is in recordings, whether it is whole, and what can be made of it.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,0 +1,14 @@
+#include "bag/bag_command.hpp"
+
+#include "bag/subcommands.hpp"
+
+namespace baton {
+
+void addBagCommand(CLI::App& app, ExitCode& exit_code) {
+  CLI::App* bag = app.add_subcommand("bag", "look into a recording");
+  bag->require_subcommand(1);
+  addBagInfo(*bag, exit_code);
+  addBagHash(*bag, exit_code);
+}
+
+}  // namespace baton

@@ -1,0 +1,79 @@
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "bag/run_hash.hpp"
+#include "bag/subcommands.hpp"
+#include "base/error.hpp"
+#include "runtime/json.hpp"
+
+namespace baton {
+namespace {
+
+struct HashRequest {
+  std::string file;
+  std::string other;  // to compare with
+  bool json = false;
+};
+
+/// Prints the hash and says whether the payloads give it.
+ExitCode hash(const HashRequest& request) {
+  const HashedRun run = hashRun(request.file);
+  const std::optional<std::uint64_t> broken = run.firstBroken();
+  nlohmann::ordered_json json{{"file", request.file},
+                              {"hash", std::to_string(run.hash())},
+                              {"first_step", run.steps.begin()->first},
+                              {"last_step", run.steps.rbegin()->first},
+                              {"payloads_agree", !broken}};
+  if (broken) json["first_broken_step"] = *broken;
+  std::string verdict = broken ? "the payloads of step " + std::to_string(*broken) + " do not give the hash after it"
+                               : "the recorded payloads give it, step by step";
+  bool is_good = !broken;
+  if (!request.other.empty()) {
+    const HashedRun other = hashRun(request.other);
+    const Comparison comparison = compare(run, other);
+    const std::optional<Parting>& parting = comparison.parting;
+    const bool is_same = !parting && comparison.steps > 0 && !other.firstBroken();
+    json["same_as"] = {{"file", request.other}, {"same", is_same}, {"steps_compared", comparison.steps}};
+    if (parting) {
+      json["same_as"]["first_different_step"] = parting->step;
+      json["same_as"]["topic"] = parting->topic;
+      verdict += "\ndiffers from " + request.other + " first at step " + std::to_string(parting->step) + " in " +
+                 parting->topic;
+    } else {
+      verdict += "\n" +
+                 (comparison.steps == 0 ? "no step in common with " + request.other
+                                        : "the same as " + request.other + " in the " +
+                                              std::to_string(comparison.steps) + " steps that both have") +
+                 (other.firstBroken() ? ", whose payloads do not give its own hash" : "");
+    }
+    is_good = is_good && is_same;
+  }
+  if (request.json) {
+    std::puts(toText(json).c_str());
+  } else {
+    std::printf("%s of steps %s to %s\n%s\n", json["hash"].get<std::string>().c_str(),
+                json["first_step"].dump().c_str(), json["last_step"].dump().c_str(), verdict.c_str());
+  }
+  return is_good ? ExitCode::kOk : ExitCode::kFailed;
+}
+
+}  // namespace
+
+void addBagHash(CLI::App& bag, ExitCode& exit_code) {
+  const auto request = std::make_shared<HashRequest>();
+  CLI::App* command =
+      bag.add_subcommand("hash", "the hash of a recorded run, computed again from its payloads; two files: compared");
+  command->footer(
+      "Exit codes: 0 the payloads give the hash that the run had, and the other file has the same; 1 otherwise, with "
+      "the "
+      "first step.");
+  command->add_option("file", request->file, "recording of a run (MCAP)")->required();
+  command->add_option("other", request->other, "another one, to compare step by step");
+  command->add_flag("--json", request->json, "as a JSON object");
+  command->callback([request, &exit_code] { exit_code = hash(*request); });
+}
+
+}  // namespace baton

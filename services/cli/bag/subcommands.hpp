@@ -1,0 +1,13 @@
+/// The subcommands of `baton bag`, each in a file of its own.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "base/error.hpp"
+
+namespace baton {
+
+void addBagInfo(CLI::App& bag, ExitCode& exit_code);
+void addBagHash(CLI::App& bag, ExitCode& exit_code);
+
+}  // namespace baton
