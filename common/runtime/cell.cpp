@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path cellsFolder() {
-  const fs::path folder = stateFolder() / "cells";
+  fs::path folder = stateFolder() / "cells";
   fs::create_directories(folder);
   return folder;
 }
@@ -132,7 +132,7 @@ void keepExperiment(const RunInfo& info, const Scenario& scenario) {
 }
 
 fs::path runFolder(const std::string& run) {
-  const fs::path folder = stateFolder() / "runs" / run;
+  fs::path folder = stateFolder() / "runs" / run;
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw UnavailableError("cannot make " + folder.string() + ": " + error.message());

@@ -37,7 +37,8 @@ void readBaton(const YamlMap& map, Scenario& scenario) {
     const YamlMap baton =
         node->map({"margin_steps", "blend_s", "max_effort_step", "max_effort_rate", "max_command", "fallback"});
     BatonConfig& config = scenario.baton;
-    config.margin_steps = static_cast<std::uint64_t>(baton.integerOr("margin_steps", 1, 1000, config.margin_steps));
+    config.margin_steps = static_cast<std::uint64_t>(
+        baton.integerOr("margin_steps", 1, 1000, static_cast<std::int64_t>(config.margin_steps)));
     config.max_effort_step =
         baton.numberOr("max_effort_step", {0.0, 1e9, "N m or N", true}, scenario.baton.max_effort_step);
     config.max_command = baton.numberOr("max_command", {0.0, 1e9, "N m or N", true}, config.max_command);

@@ -88,7 +88,7 @@ CheckpointSet checkpointAt(const Fork& fork, const fs::path& folder, const RunRe
   services.emplace_back(kPlantName);
   const mcap::Reader reader(original.file);
   const bool is_ours = metadataValue(reader, "baton.run", "build_id") == buildId();
-  const CheckpointSet newest =
+  CheckpointSet newest =
       is_ours ? newestCheckpoint(original.file, original.checkpoints_from_ns, step, services) : CheckpointSet{};
   if (newest.step == step) return newest;
 
@@ -110,7 +110,7 @@ CheckpointSet checkpointAt(const Fork& fork, const fs::path& folder, const RunRe
                                        " do not repeat: " + original.file.string() +
                                        " was recorded by another build, or is damaged; `baton rerun` tells where");
   }
-  const CheckpointSet made = newestCheckpoint(lead_in.out, 0, step, services);
+  CheckpointSet made = newestCheckpoint(lead_in.out, 0, step, services);
   if (made.step != step) {
     throw UsageError("step " + std::to_string(step) +
                      " lies in a handover or where a message is stuck: choose one before or after it");

@@ -151,7 +151,7 @@ void print(const std::vector<Trial>& trials, const KillsRequest& request, double
   }
 }
 
-void kills(KillsRequest request, ExitCode& exit_code) {
+void kills(const KillsRequest& request, ExitCode& exit_code) {
   using Clock = std::chrono::steady_clock;
   const Scenario scenario = loadScenario(findScenario(request.scenario).string());
   const std::vector<Kill> drawn = drawKills(scenario, request.seed, request.runs);

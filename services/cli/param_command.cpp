@@ -74,8 +74,7 @@ void print(const msg::ParameterStatus& controller) {
 
 /// The controllers of the run, or the one that is meant. Throws UsageError when there is none of that name.
 std::vector<std::string> meantControllers(const CellClient& client, const std::string& controller) {
-  const std::vector<std::string> all =
-      controllerNames(loadScenario(keptScenario(client.info()), keptRobot(client.info())));
+  std::vector<std::string> all = controllerNames(loadScenario(keptScenario(client.info()), keptRobot(client.info())));
   if (controller.empty()) return all;
   if (std::find(all.begin(), all.end(), controller) == all.end()) {
     throw UsageError(unknownName("controller", controller, all));

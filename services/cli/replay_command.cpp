@@ -21,6 +21,7 @@ void addReplayCommand(CLI::App& app, ExitCode& /*exit_code*/) {
     const std::vector<std::string> rest = command->remaining();
     arguments.insert(arguments.end(), rest.begin(), rest.end());
     std::vector<char*> argv;
+    argv.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
     // It takes this process's place, and so its signals and its exit code are the replayer's.

@@ -40,7 +40,7 @@ class Plant {
   void onContact(const msg::Contact& message, const dds::RawSample& sample);
   void onCommand(const msg::JointCommand& message, const dds::RawSample& sample);
   void onSimRequest(const msg::SimRequest& request);
-  void onSwapRequest(const msg::SwapRequest& request);
+  void onSwapRequest(const msg::SwapRequest& message);
   void onSwapAck(const msg::SwapAck& ack, const dds::RawSample& sample);
   void onControllerStatus(const msg::ControllerStatus& status, const dds::RawSample& sample);
   void onRewindAck(const msg::RewindAck& ack);

@@ -311,7 +311,7 @@ JointVector Plant::takeOver(std::uint64_t step) {
   // what they felt before. The old blend, if one still runs, is part of it.
   const bool has_outgoing = master_.hasOutgoingCommand();
   const JointVector tau_old = has_outgoing ? arm_.blended(step, outgoing_effort_) : arm_.state().tau_applied;
-  const JointVector raw_step = tau_old - effort_;
+  JointVector raw_step = tau_old - effort_;
   arm_.blendFrom(step, completed_->blend_steps, raw_step);
   publishReport(true);
   metered_plan_ = completed_->plan_id;

@@ -193,9 +193,7 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
         }
         break;
       case msg::SIM_STOP:
-        if (request.at_step() == 0) {
-          reply.accepted(true);
-        } else if (stopAt(request.at_step())) {
+        if (request.at_step() == 0 || stopAt(request.at_step())) {
           reply.accepted(true);
         } else {
           refuse("expected a step after " + std::to_string(step) + " and not after the end of the run");

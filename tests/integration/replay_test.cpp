@@ -29,6 +29,7 @@ TEST(Replay, GivesAnotherReaderTheSameBytes) {
                                                                 {"reference", "Reference"},
                                                                 {"joint_command", "JointCommand"},
                                                                 {"shadow_command", "JointCommand"}};
+  readers.reserve(topics.size());
   for (const auto& [topic, type] : topics) {
     readers.push_back(std::make_unique<dds::RawReader>(
         participant, dds::EndpointOptions{.topic = topic, .type = "baton::msg::" + type},
@@ -49,7 +50,8 @@ TEST(Replay, GivesAnotherReaderTheSameBytes) {
   ASSERT_EQ(received.size(), expected.size());
   for (const auto& [key, payloads] : received) {
     const auto [begin, end] = expected.equal_range(key.first);
-    const bool is_there = std::any_of(begin, end, [&](const auto& one) { return one.second == payloads; });
+    const bool is_there =
+        std::any_of(begin, end, [&wanted = payloads](const auto& one) { return one.second == wanted; });
     EXPECT_TRUE(is_there) << key.first << ": " << payloads.size() << " samples";
   }
 }

@@ -112,7 +112,8 @@ TEST(Report, AFigureIsRunDrawnAndHeldAgainstTheory) {
 
 /// An installation with data that a test may change: the programs by hard links, so that they see it beside them.
 fs::path installation(const Bench& bench) {
-  const fs::path root = bench.folder() / "installed", data = root / "share/baton";
+  fs::path root = bench.folder() / "installed";
+  const fs::path data = root / "share/baton";
   fs::create_directories(root / "bin");
   fs::create_directories(data);
   for (const auto& program : fs::directory_iterator(programFolder())) {

@@ -188,6 +188,7 @@ TEST_F(LedgerTest, AServiceThatFailedIsNotWaitedForButStillMissed) {
 
 TEST_F(LedgerTest, AManifestMayComeBeforeTheLastSamples) {
   std::vector<std::vector<std::byte>> payloads;
+  payloads.reserve(10);
   for (int i = 0; i < 10; ++i) payloads.push_back(state_.send());
   ledger_.addManifest(manifestOf("plant", {&state_}));
   ledger_.addManifest(manifestOf("environment", {}));

@@ -39,6 +39,7 @@ struct Case {
   std::string check;
   std::vector<Experiment> runs;  // two for a check that compares
   std::vector<Fault> faults;     // together they spoil every number that the check gives
+  // NOLINTNEXTLINE(readability-identifier-naming): the name GoogleTest looks for
   friend void PrintTo(const Case& one, std::ostream* out) { *out << one.check; }
 };
 

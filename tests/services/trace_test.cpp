@@ -22,11 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 
 class TraceOfAFile : public testing::Test {
+ public:
+  TraceOfAFile(const TraceOfAFile&) = delete;
+  TraceOfAFile& operator=(const TraceOfAFile&) = delete;
+
  protected:
   TraceOfAFile() { fs::remove(file_); }
   ~TraceOfAFile() override { fs::remove(file_); }
-  TraceOfAFile(const TraceOfAFile&) = delete;
-  TraceOfAFile& operator=(const TraceOfAFile&) = delete;
 
   /// Writes the states of these steps, q1 = step / 1000 rad, and references for the first of them only. Reads it back.
   Trace recorded(const std::vector<std::uint64_t>& steps) const {

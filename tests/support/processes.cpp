@@ -28,6 +28,7 @@ pid_t launch(const fs::path& program, const std::vector<std::string>& arguments,
   std::vector<std::string> all{program.string()};
   all.insert(all.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
+  argv.reserve(all.size() + 1);
   for (std::string& argument : all) argv.push_back(argument.data());
   argv.push_back(nullptr);
   const pid_t pid = fork();

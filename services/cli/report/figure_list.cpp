@@ -101,6 +101,7 @@ Erratum readErratum(const YamlNode& node, const std::vector<Figure>& figures) {
                   .printed_cannot_run = map.booleanOr("printed_cannot_run", false),
                   .figures = {}};
   std::vector<std::string> numbers;
+  numbers.reserve(figures.size());
   for (const Figure& figure : figures) numbers.push_back(figure.number);
   if (const auto named = map.find("figures")) {
     for (const YamlNode& one : named->list(1, 8)) erratum.figures.push_back(known(one, "figure", numbers));

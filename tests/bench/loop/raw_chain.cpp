@@ -105,6 +105,7 @@ Process launch(const std::string& name, const Chain& chain, const std::vector<Pr
 void awaitWords(std::vector<std::string> awaited, const std::vector<Process>& all) {
   while (!awaited.empty()) {
     std::vector<pollfd> sockets;
+    sockets.reserve(all.size());
     for (const Process& process : all) sockets.push_back({process.socket, POLLIN, 0});
     if (poll(sockets.data(), sockets.size(), kPatience_ms) <= 0) {
       throw std::runtime_error("the chain does not get on: it waits for " + awaited.front());

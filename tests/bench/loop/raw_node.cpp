@@ -75,7 +75,7 @@ Node::~Node() {
   DomainParticipantFactory::get_instance()->delete_participant(participant_);
 }
 
-Topic* Node::createTopic(TypeSupport type, const std::string& name) {
+Topic* Node::createTopic(const TypeSupport& type, const std::string& name) {
   type.register_type(participant_);
   return made(participant_->create_topic(name, type.get_type_name(), participant_->get_default_topic_qos()),
               "topic " + name);

@@ -70,7 +70,7 @@ class Node {
     Message message_;
   };
 
-  dds::Topic* createTopic(dds::TypeSupport type, const std::string& name);
+  dds::Topic* createTopic(const dds::TypeSupport& type, const std::string& name);
   dds::DataWriter* createWriter(const dds::TypeSupport& type, const std::string& topic);
   dds::DataReader* createReader(const dds::TypeSupport& type, const std::string& topic,
                                 dds::DataReaderListener* listener);

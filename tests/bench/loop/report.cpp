@@ -53,6 +53,7 @@ Json orNull(double value) { return std::isnan(value) ? Json(nullptr) : Json(valu
 
 Json spread(const std::vector<Measurement>& rounds, Value value) {
   std::vector<double> values;
+  values.reserve(rounds.size());
   for (const Measurement& round : rounds) values.push_back(round.*value);
   if (std::isnan(median(values))) return nullptr;
   return {{"median", median(values)}, {"rounds", values}};

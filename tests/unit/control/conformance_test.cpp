@@ -51,6 +51,7 @@ LawInput randomInput(const RobotModel& robot, std::mt19937& generator) {
 std::vector<LawInput> randomInputs(const RobotModel& robot, unsigned seed) {
   std::mt19937 generator(seed);
   std::vector<LawInput> inputs;
+  inputs.reserve(kSamples);
   for (int i = 0; i < kSamples; ++i) inputs.push_back(randomInput(robot, generator));
   return inputs;
 }

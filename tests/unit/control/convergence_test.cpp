@@ -34,6 +34,7 @@ struct Situation {
     made->reset();
     return made;
   }
+  // NOLINTNEXTLINE(readability-identifier-naming): the name GoogleTest looks for
   friend void PrintTo(const Situation& situation, std::ostream* out) { *out << situation.name; }
 };
 
@@ -95,7 +96,7 @@ JointVector accelerationUnder(const Situation& s, const JointVector& q, const Jo
 /// qdd when the effort answers what was late_s ago, to first order.
 JointVector acceleration(const Situation& s, Law& law, double time_s, const JointVector& q, const JointVector& qd,
                          double late_s = 0.0) {
-  const JointVector prompt = accelerationUnder(s, q, qd, effort(s, law, time_s, q, qd));
+  JointVector prompt = accelerationUnder(s, q, qd, effort(s, law, time_s, q, qd));
   if (late_s == 0.0) return prompt;
   const JointVector tau = effort(s, law, time_s - late_s, q - late_s * qd, qd - late_s * prompt);
   return accelerationUnder(s, q, qd, tau);

@@ -18,7 +18,8 @@ ParameterChange change(std::uint64_t at_step, ParameterValues set) { return {at_
 
 class Schedule : public ::testing::Test {
  protected:
-  ParameterSchedule of(Changes planned = {}, const std::string& law_name = "joint_pd", ParameterValues start = {}) {
+  ParameterSchedule of(Changes planned = {}, const std::string& law_name = "joint_pd",
+                       const ParameterValues& start = {}) {
     const LawInfo& law = findLaw(law_name);
     return {law, model, completeParameters(law.parameters, start, model.size()), std::move(planned)};
   }

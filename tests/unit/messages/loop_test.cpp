@@ -250,12 +250,14 @@ TEST(LoopMessages, AnyOtherNumberOfJointsIsRefused) {
 /// Where the numbers of a message are.
 std::vector<double*> numbersOf(std::vector<double>& sequence) {
   std::vector<double*> result;
+  result.reserve(sequence.size());
   for (double& x : sequence) result.push_back(&x);
   return result;
 }
 template <std::size_t kSize>
 std::vector<double*> numbersOf(std::array<double, kSize>& values) {
   std::vector<double*> result;
+  result.reserve(kSize);
   for (double& x : values) result.push_back(&x);
   return result;
 }

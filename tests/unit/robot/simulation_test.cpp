@@ -162,7 +162,7 @@ TEST(ContactFollowing, BouncesOffAWallWithTheSpeedItCameWith) {
   const RobotModel robot = test::slider(kMass);
   const auto gain = [&](bool held, double omega_dt) {
     const Motion start{JointVector::Constant(1, -0.01), JointVector::Constant(1, 1.0)};
-    const int steps = 260.0 * 1e-3 * kOmega / omega_dt;
+    const int steps = static_cast<int>(260.0 * 1e-3 * kOmega / omega_dt);
     const Motion end = simulate(robot, start, steps * omega_dt / kOmega, steps, wall(held));
     EXPECT_LT(end.q(0), 0.0);  // it is back outside
     return end.qd.squaredNorm() - 1.0;

@@ -186,6 +186,7 @@ std::vector<Arrival> shuffledArrivals(std::mt19937& generator, std::size_t input
   }
   std::stable_sort(due.begin(), due.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Arrival> arrivals;
+  arrivals.reserve(due.size());
   for (const auto& [time, arrival] : due) arrivals.push_back(arrival);
   return arrivals;
 }
