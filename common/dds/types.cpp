@@ -1,6 +1,7 @@
 #include "dds/types.hpp"
 
 #include <algorithm>
+#include <charconv>
 
 namespace baton::dds {
 
@@ -19,6 +20,18 @@ std::string toString(const Guid& guid) {
     text += kDigits[guid.bytes[i] & 0xF];
   }
   return text;
+}
+
+std::optional<Guid> guidCalled(std::string_view text) {
+  constexpr std::size_t kDot = 2 * std::tuple_size_v<GuidPrefix>;
+  Guid guid;
+  if (text.size() != 2 * guid.bytes.size() + 1 || text[kDot] != '.') return std::nullopt;
+  for (std::size_t i = 0; i < guid.bytes.size(); ++i) {
+    const char* digits = text.data() + 2 * i + (2 * i < kDot ? 0 : 1);
+    const auto [end, error] = std::from_chars(digits, digits + 2, guid.bytes[i], 16);
+    if (error != std::errc() || end != digits + 2) return std::nullopt;
+  }
+  return guid;
 }
 
 const char* toString(Transport transport) { return transport == Transport::kSharedMemory ? "shm" : "udp"; }

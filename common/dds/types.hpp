@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace baton::dds {
 
@@ -23,6 +24,8 @@ using GuidPrefix = std::array<std::uint8_t, 12>;
 
 /// "0123456789abcdef01234567.00000103", as DDS tools print it.
 [[nodiscard]] std::string toString(const Guid& guid);
+/// Back from that; nothing for another text.
+[[nodiscard]] std::optional<Guid> guidCalled(std::string_view text);
 
 /// A received sample: the serialized payload, 4-byte encapsulation header included, and what DDS says of it. The span
 /// lives as long as the callback.

@@ -29,6 +29,7 @@ mcap::WriterOptions fileOptions(const RecordingConfig& config) {
   options.compression = config.compression == "none"  ? mcap::Compression::kNone
                         : config.compression == "lz4" ? mcap::Compression::kLz4
                                                       : mcap::Compression::kZstd;
+  options.sync_chunks = config.sync_chunks;
   return options;
 }
 
@@ -213,17 +214,9 @@ void Recorder::writeBatch(const SampleQueue::Batch& batch) {
                 payload);
     if (const auto loop = loop_steps_.find(topic.options.topic); loop != loop_steps_.end()) {
       loop->second = std::max(loop->second, stepOf(payload));
-    } else if (topic.options.topic == dds::topics::kServiceManifest.name) {
-      msg::ServiceManifest manifest;
-      if (dds::decode(payload, manifest)) ledger_.addManifest(manifest);
     } else if (topic.options.topic == dds::topics::kRewind.name) {
       msg::Rewind rewind;
       if (dds::decode(payload, rewind)) onRewind(rewind);
-    } else if (topic.options.topic == dds::topics::kServiceStatus.name) {
-      msg::ServiceStatus status;
-      if (!dds::decode(payload, status)) continue;
-      if (status.state() == msg::SERVICE_FAILED) ledger_.giveUpOn(status.name().c_str());
-      if (status.state() == msg::SERVICE_READY && status.role() == "controller") ledger_.expect(status.name().c_str());
     }
   }
 }
@@ -285,6 +278,8 @@ void Recorder::writeFile() {
     std::chrono::steady_clock::time_point ended{};
     std::uint64_t progress = 0;
     std::chrono::steady_clock::time_point flushed = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> sync(service_.scenario().recording.sync_s);
+    std::chrono::steady_clock::time_point synced = flushed;
     publishStatus(msg::RECORDER_RECORDING, "");
     while (queue_.take(batch, kIdle)) {
       writeBatch(batch);
@@ -294,6 +289,10 @@ void Recorder::writeFile() {
         file_.flush();
         flushed = now;
         publishStatus(msg::RECORDER_RECORDING, "");
+      }
+      if (sync.count() > 0.0 && now - synced > sync) {
+        file_.sync();
+        synced = std::chrono::steady_clock::now();
       }
       if (!has_run_ended_) continue;
       const bool is_first = ended == std::chrono::steady_clock::time_point{};

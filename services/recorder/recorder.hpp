@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "dds/endpoint.hpp"
-#include "ledger.hpp"
 #include "mcap/writer.hpp"
+#include "runtime/ledger.hpp"
 #include "runtime/service.hpp"
 #include "sample_queue.hpp"
 

@@ -26,6 +26,19 @@ std::uint64_t chained(const std::vector<std::string>& payloads) {
   return hash;
 }
 
+TEST(Guid, ItsTextLeadsBackToIt) {
+  std::mt19937 generator(4);
+  for (int i = 0; i < 100; ++i) {
+    Guid guid;
+    for (std::uint8_t& byte : guid.bytes) byte = static_cast<std::uint8_t>(generator());
+    EXPECT_EQ(guidCalled(toString(guid)), guid);
+  }
+  for (const char* text : {"", "0123456789abcdef01234567.0000010", "0123456789abcdef01234567000000103",
+                           "0123456789abcdef01234567.0000010g", "0123456789abcdef01234567.000001030"}) {
+    EXPECT_FALSE(guidCalled(text)) << text;
+  }
+}
+
 TEST(ChainHash, IsXxh3SoRecordingsCanBeCheckedByAnybody) {
   // XXH3_64bits of nothing, as published with the algorithm.
   EXPECT_EQ(chainHash(0, {}), 0x2D06'8005'38D3'94C2u);

@@ -1,15 +1,17 @@
-#include "ledger.hpp"
+#include "runtime/ledger.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "dds/codec.hpp"
 #include "dds/hash.hpp"
 #include "dds/topics.hpp"
 #include "runtime/json.hpp"
 
 namespace baton {
 
-bool Ledger::book(const Key& key, std::uint64_t sequence, std::span<const std::byte> payload) {
-  ReceivedStream& stream = streams_[key];
+bool Ledger::book(Stream& booked, std::uint64_t sequence, std::span<const std::byte> payload) {
+  ReceivedStream& stream = booked.second;
   if (stream.count > 0 && sequence <= stream.last_sequence) return false;
   if (stream.count == 0) {
     stream.first_sequence = sequence;
@@ -19,7 +21,20 @@ bool Ledger::book(const Key& key, std::uint64_t sequence, std::span<const std::b
   stream.last_sequence = sequence;
   ++stream.count;
   stream.stream_hash = dds::chainHash(stream.stream_hash, payload);
+  read(booked.first.first, payload);
   return true;
+}
+
+void Ledger::read(const std::string& topic, std::span<const std::byte> payload) {
+  if (topic == dds::topics::kServiceManifest.name) {
+    msg::ServiceManifest manifest;
+    if (dds::decode(payload, manifest)) addManifest(manifest);
+  } else if (topic == dds::topics::kServiceStatus.name) {
+    msg::ServiceStatus status;
+    if (!dds::decode(payload, status)) return;
+    if (status.state() == msg::SERVICE_FAILED) giveUpOn(status.name().c_str());
+    if (status.state() == msg::SERVICE_READY && status.role() == "controller") expect(status.name().c_str());
+  }
 }
 
 void Ledger::addManifest(const msg::ServiceManifest& manifest) { manifests_.push_back(manifest); }
@@ -120,6 +135,40 @@ std::string Ledger::certificate() const {
   const std::vector<std::string> found = problems();
   const nlohmann::ordered_json text{{"complete", found.empty()}, {"problems", found}, {"streams", streams}};
   return toText(text);
+}
+
+std::vector<std::string> Ledger::disagreements(const std::string& certificate_text) const {
+  using Json = nlohmann::json;
+  std::vector<std::string> result;
+  const auto rowsOf = [](const Json& certificate) {
+    std::map<std::pair<std::string, std::string>, Json> rows;
+    for (const Json& row : certificate.at("streams")) rows[{row.at("topic"), row.at("writer")}] = row;
+    return rows;
+  };
+  try {
+    const Json theirs = Json::parse(certificate_text), ours = Json::parse(certificate());
+    auto their_rows = rowsOf(theirs);
+    for (const auto& [key, row] : rowsOf(ours)) {
+      const std::string what = key.first + " of writer " + key.second;
+      const Json their_row = std::exchange(their_rows[key], {});
+      if (their_row.is_null()) result.push_back("the certificate does not know " + what);
+      for (const auto& [field, value] : row.items()) {
+        if (their_row.is_null() || their_row.value(field, Json()) == value) continue;
+        result.push_back("the certificate says otherwise of " + what + ": " + field + " " +
+                         their_row.value(field, Json()).dump() + ", the bytes give " + value.dump());
+        break;
+      }
+    }
+    for (const auto& [key, row] : their_rows) {
+      if (!row.is_null())
+        result.push_back("the certificate knows " + key.first + " of writer " + key.second + ", which is not there");
+    }
+    if (theirs.at("complete").get<bool>() && !isComplete())
+      result.emplace_back("the certificate says complete, the bytes do not");
+  } catch (const Json::exception& error) {
+    result.push_back(std::string("the certificate cannot be read: ") + error.what());
+  }
+  return result;
 }
 
 }  // namespace baton

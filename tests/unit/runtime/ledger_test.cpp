@@ -1,13 +1,16 @@
 /// The recording's completeness certificate: what came held against what was sent.
-#include "ledger.hpp"
+#include "runtime/ledger.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "dds/codec.hpp"
 #include "dds/hash.hpp"
+#include "dds/topics.hpp"
 
 namespace baton {
 namespace {
@@ -209,6 +212,68 @@ TEST_F(LedgerTest, WritersOutsideTheRunAreRecordedWithoutAnAccount) {
   const Json row = certificate()["streams"][0];
   EXPECT_EQ(row["topic"], "turtle/pose");
   EXPECT_FALSE(row.contains("sent"));
+}
+
+template <class T>
+std::vector<std::byte> encoded(const T& message) {
+  std::vector<std::byte> buffer(dds::maxPayload<T>());
+  const auto payload = dds::encode(message, buffer);
+  return {payload.begin(), payload.end()};
+}
+
+TEST_F(LedgerTest, WhatServicesSayIsReadFromWhatIsBooked) {
+  transmit(state_, 10);
+  const Ledger::Key manifests{dds::topics::kServiceManifest.name, guidOf(4)};
+  const Ledger::Key status{dds::topics::kServiceStatus.name, guidOf(5)};
+  ledger_.book(manifests, 1, encoded(manifestOf("plant", {&state_})));
+  ledger_.book(manifests, 2, encoded(manifestOf("environment", {})));
+  EXPECT_TRUE(ledger_.isComplete());
+  EXPECT_EQ(ledger_.manifests(), 2u);
+
+  msg::ServiceStatus joined;
+  joined.name("late");
+  joined.role("controller");
+  joined.state(msg::SERVICE_READY);
+  ledger_.book(status, 1, encoded(joined));
+  EXPECT_TRUE(mentions(ledger_.problems(), "late sent no manifest"));
+  EXPECT_FALSE(ledger_.isSettled());
+  joined.state(msg::SERVICE_FAILED);
+  ledger_.book(status, 2, encoded(joined));
+  EXPECT_TRUE(ledger_.isSettled()) << "it will not come";
+  EXPECT_FALSE(ledger_.isComplete());
+}
+
+TEST_F(LedgerTest, AgreesWithItsOwnCertificateAndWithNoOther) {
+  transmit(state_, 10);
+  transmit(contact_, 10, [](std::uint64_t sequence) { return sequence != 4; });
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  ledger_.addManifest(manifestOf("environment", {&contact_}));
+  EXPECT_TRUE(ledger_.disagreements(ledger_.certificate()).empty());
+
+  const auto disagreementsWith = [&](const std::function<void(Json&)>& change) {
+    Json text = certificate();
+    change(text);
+    return ledger_.disagreements(text.dump());
+  };
+  EXPECT_TRUE(
+      mentions(disagreementsWith([](Json& text) { text["complete"] = true; }), "says complete, the bytes do not"));
+  const Json rows = certificate()["streams"];
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (const auto& [field, value] : rows[i].items()) {
+      const std::string name = field;
+      EXPECT_FALSE(disagreementsWith([&](Json& text) { text["streams"][i][name] = "other"; }).empty()) << name;
+      EXPECT_FALSE(disagreementsWith([&](Json& text) { text["streams"][i].erase(name); }).empty()) << name;
+    }
+    EXPECT_TRUE(mentions(disagreementsWith([&](Json& text) { text["streams"].erase(i); }), "does not know"));
+  }
+  EXPECT_TRUE(mentions(disagreementsWith([&](Json& text) {
+                         text["streams"].push_back(rows[0]);
+                         text["streams"].back()["topic"] = "more";
+                       }),
+                       "knows more of writer"));
+  for (const char* text : {"", "{", "[]", "{}", R"({"complete": 1, "streams": []})", R"({"streams": [1]})"}) {
+    EXPECT_FALSE(ledger_.disagreements(text).empty()) << text;
+  }
 }
 
 TEST_F(LedgerTest, TheCertificateIsWrittenWhateverBytesAForeignNameHas) {

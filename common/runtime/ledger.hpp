@@ -1,7 +1,8 @@
 /// What was received from each writer, held against what the writers say they sent: the recording's completeness
-/// certificate.
+/// certificate. The recorder keeps one while it records; who reads a recording can keep one again, from its bytes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -31,8 +32,16 @@ class Ledger {
   /// @param services who has to send a manifest at the end.
   explicit Ledger(std::vector<std::string> services) : services_(services.begin(), services.end()) {}
 
-  /// Books a sample. Returns false for one that came already (it is not to be recorded again).
-  bool book(const Key& key, std::uint64_t sequence, std::span<const std::byte> payload);
+  /// One stream's account: found once, for all its samples. Lives as long as the ledger.
+  using Stream = std::map<Key, ReceivedStream>::value_type;
+  [[nodiscard]] Stream& streamOf(const Key& key) { return *streams_.try_emplace(key).first; }
+
+  /// Books a sample; what manifests and the status of services say of who vouches for what is noted. Returns false for
+  /// one that came already (it is not to be recorded again).
+  bool book(Stream& stream, std::uint64_t sequence, std::span<const std::byte> payload);
+  bool book(const Key& key, std::uint64_t sequence, std::span<const std::byte> payload) {
+    return book(streamOf(key), sequence, payload);
+  }
   void addManifest(const msg::ServiceManifest& manifest);
 
   /// Another service has joined, of whom a manifest is to be expected.
@@ -49,10 +58,15 @@ class Ledger {
   [[nodiscard]] std::vector<std::string> problems() const;
   /// The certificate as JSON text: verdict, problems, one row a stream.
   [[nodiscard]] std::string certificate() const;
+  /// One sentence for each thing that this certificate says otherwise than certificate().
+  [[nodiscard]] std::vector<std::string> disagreements(const std::string& certificate) const;
+  [[nodiscard]] const std::map<Key, ReceivedStream>& streams() const { return streams_; }
+  [[nodiscard]] std::size_t manifests() const { return manifests_.size(); }
   /// Samples that never came, on topics of which none may be missing: of a status only the latest word counts.
   [[nodiscard]] std::uint64_t missing() const;
 
  private:
+  void read(const std::string& topic, std::span<const std::byte> payload);
   [[nodiscard]] bool hasManifestOf(const std::string& service) const;
   [[nodiscard]] std::vector<std::string> unvouched() const;
   [[nodiscard]] std::vector<std::string> problemsOf(const msg::ServiceManifest& manifest) const;
