@@ -205,7 +205,7 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
     index.info.header = decodeHeader(readBody(file, *first, options, storage));
     if (!coversData(file, index, std::move(pieces), first->end(), footer.summary_start, problem)) return std::nullopt;
     index.info.file_bytes = index.info.complete_bytes = file.size();
-    index.info.is_complete = index.info.has_summary = true;
+    index.info.is_complete = index.info.has_all_data = index.info.has_summary = true;
     return index;
   } catch (const FormatError& error) {
     problem = std::string("its summary is damaged: ") + error.what();

@@ -27,6 +27,8 @@ struct ReaderOptions {
   bool check_crc = true;  // of chunks, attachments and summary
   /// When given, a damaged chunk is reported here and left out. Otherwise it is thrown as FormatError.
   std::function<void(const Damage&)> on_damage{};
+  /// Told, chunk by chunk, how many bytes have been read of how many while a file without a summary is indexed.
+  std::function<void(std::uint64_t, std::uint64_t)> on_progress{};
 };
 
 struct FileInfo {
@@ -34,6 +36,7 @@ struct FileInfo {
   std::uint64_t file_bytes = 0;
   bool is_complete = false;          // it ends as a finished recording does
   std::uint64_t complete_bytes = 0;  // up to here everything is a whole record; file_bytes when is_complete
+  bool has_all_data = false;         // its data section ends as it should: if it was cut, then only in its index
   bool has_summary = false;          // the index came from the file's summary, not from reading the whole file
   std::string problem{};  // where it was cut and why, or why its summary was not used; empty when all is well
 };
@@ -86,6 +89,11 @@ class RecordWalk {
   [[nodiscard]] std::optional<RecordPlace> next();
   /// The end of the last whole record.
   [[nodiscard]] std::uint64_t position() const { return position_; }
+  /// Goes on there, also where it had stopped.
+  void moveTo(std::uint64_t position) {
+    position_ = position;
+    problem_.clear();
+  }
   /// Where and why the walk stopped before its end, as "byte 12: ..."; empty when it did not.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 

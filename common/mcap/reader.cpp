@@ -40,13 +40,15 @@ Bytes Reader::readAttachment(const AttachmentIndex& attachment) const {
   });
 }
 
+Metadata Reader::readMetadata(const MetadataIndex& index) const {
+  const RecordPlace place = placeOf(file_, Opcode::kMetadata, index.offset, index.length);
+  return decodeRecord(file_, place, options_, decodeMetadata);
+}
+
 std::vector<Metadata> Reader::metadata() const {
   std::vector<Metadata> all;
   all.reserve(index_.metadata.size());
-  for (const MetadataIndex& index : index_.metadata) {
-    const RecordPlace place = placeOf(file_, Opcode::kMetadata, index.offset, index.length);
-    all.push_back(decodeRecord(file_, place, options_, decodeMetadata));
-  }
+  for (const MetadataIndex& index : index_.metadata) all.push_back(readMetadata(index));
   return all;
 }
 
@@ -60,14 +62,17 @@ void Reader::forEachMessage(const MessageFilter& filter,
   for (MessageView message; cursor.next(message);) callback(message);
 }
 
-bool Reader::dataCrcMatches() const {
+std::optional<bool> Reader::dataCrcMatches() const {
   constexpr std::uint64_t kBlockBytes = 1 << 20;
   RecordWalk walk(file_, kMagic.size(), file_.size());
   std::optional<RecordPlace> place = walk.next();
   while (place && place->opcode != Opcode::kDataEnd) place = walk.next();
-  if (!place) return false;
+  if (!place) {
+    // In a finished file it is there; who cannot come to it stumbles over a record that was changed.
+    return info().is_complete ? std::optional(false) : std::nullopt;
+  }
   const DataEnd data_end = decodeRecord(file_, *place, options_, decodeDataEnd);
-  if (data_end.data_crc == 0) return true;
+  if (data_end.data_crc == 0) return std::nullopt;
   Buffer storage;
   std::uint32_t crc = 0;
   for (std::uint64_t offset = 0; offset < place->offset; offset += kBlockBytes) {

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,11 @@ class Reader {
   /// An attachment's data. Throws FormatError when its CRC or its lengths are wrong.
   /// @param attachment  one of attachments().
   [[nodiscard]] Bytes readAttachment(const AttachmentIndex& attachment) const;
-  /// All metadata records, in file order, read now. Throws FormatError when one is damaged.
+  [[nodiscard]] const std::vector<MetadataIndex>& metadataIndexes() const { return index_.metadata; }
+  /// A metadata record. Throws FormatError when it is damaged.
+  /// @param index  one of metadataIndexes().
+  [[nodiscard]] Metadata readMetadata(const MetadataIndex& index) const;
+  /// All of them, in file order.
   [[nodiscard]] std::vector<Metadata> metadata() const;
 
   /// The messages that pass the filter, to be taken one by one.
@@ -44,9 +49,9 @@ class Reader {
   /// The same, each given to the callback.
   void forEachMessage(const MessageFilter& filter, const std::function<void(const MessageView&)>& callback) const;
 
-  /// Reads the whole data section and compares it with the CRC at its end. True also when the file has no such CRC;
-  /// false when it differs or when the file was cut before it.
-  [[nodiscard]] bool dataCrcMatches() const;
+  /// Reads the whole data section and compares it with the CRC at its end. Nothing when there is no such CRC: the file
+  /// was written without, or was cut before it.
+  [[nodiscard]] std::optional<bool> dataCrcMatches() const;
 
  private:
   ReaderOptions options_;

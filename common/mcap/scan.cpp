@@ -23,9 +23,12 @@ class Scan {
     RecordWalk walk(file_, kMagic.size(), file_.size());
     bool is_first = true;
     bool is_data = true;
-    while (const std::optional<RecordPlace> place = walk.next()) {
-      if (std::exchange(is_first, false)) {
-        takeHeader(*place);
+    while (true) {
+      const std::optional<RecordPlace> place = walk.next();
+      if (is_data && goOnBehindDamage(walk, place)) continue;
+      if (!place) break;
+      if (std::exchange(is_first, false) && takeHeader(*place)) {
+        continue;
       } else if (place->opcode == Opcode::kFooter) {
         closeRun();
         closeFile(*place);
@@ -33,6 +36,7 @@ class Scan {
       } else if (is_data) {
         take(*place);
         is_data = place->opcode != Opcode::kDataEnd;
+        index_.info.has_all_data = !is_data;
       }
     }
     closeRun();
@@ -44,12 +48,71 @@ class Scan {
   }
 
  private:
-  void takeHeader(const RecordPlace& place) {
-    if (place.opcode != Opcode::kHeader) {
-      throw FormatError(file_.path().string() + " is not an MCAP recording: it begins with " +
-                        opcodeName(place.opcode) + " where a Header is required");
+  /// False when the file goes on as if it had none, and the caller wants what is left of it.
+  bool takeHeader(const RecordPlace& place) {
+    if (place.opcode == Opcode::kHeader) {
+      guarded(place, [&](ByteView body) { index_.info.header = decodeHeader(body); });
+      return true;
     }
-    index_.info.header = decodeRecord(file_, place, options_, decodeHeader);
+    const std::string what = "it begins with " + opcodeName(place.opcode) + " where a Header is required";
+    if (!options_.on_damage) throw FormatError(file_.path().string() + " is not an MCAP recording: " + what);
+    options_.on_damage({place.offset, 0, what});
+    return false;
+  }
+
+  /// decode(body) of a record outside of chunks, unless it is damaged and left out.
+  template <class Decode>
+  void guarded(const RecordPlace& place, Decode decode) {
+    const Extent extent{.offset = place.offset, .length = place.length(), .is_chunk = false};
+    (void)loader_.guarded(extent, [&] { decode(readBody(file_, place, options_, storage_)); });
+  }
+
+  /// Where the records cannot be followed any more, because none is there or because a chunk's own lengths disagree, a
+  /// caller who wants what is left gets what follows from the next chunk on. False when all is well or nothing follows.
+  bool goOnBehindDamage(RecordWalk& walk, const std::optional<RecordPlace>& place) {
+    const bool is_torn =
+        place ? place->opcode == Opcode::kChunk && !looksLikeChunk(place->offset) : !walk.problem().empty();
+    if (!options_.on_damage || !is_torn) return false;
+    const std::uint64_t from = place ? place->offset : walk.position();
+    const std::optional<std::uint64_t> next = nextChunk(from + 1);
+    if (!next) return false;
+    closeRun();
+    options_.on_damage({from, *next - from, place ? "the lengths of the chunk disagree" : walk.problem()});
+    walk.moveTo(*next);
+    return true;
+  }
+
+  /// Whether a chunk begins there, judging by its lengths, which have to fit one another.
+  [[nodiscard]] bool looksLikeChunk(std::uint64_t offset) const {
+    constexpr std::uint64_t kFixedBytes = kRecordHeadBytes + 8 + 8 + 8 + 4;  // up to the name of the compression
+    std::array<std::byte, kFixedBytes + 4 + 4 + 8> head{};                   // of which the longest has four letters
+    const std::uint64_t left = file_.size() - offset;
+    file_.read(offset, std::span(head).first(static_cast<std::size_t>(std::min<std::uint64_t>(left, head.size()))));
+    try {
+      ByteReader in(head);
+      if (Opcode{in.number<std::uint8_t>()} != Opcode::kChunk) return false;
+      const auto length = in.number<std::uint64_t>();
+      (void)in.bytes(kFixedBytes - kRecordHeadBytes);
+      const std::string compression = in.string();
+      (void)compressionFromName(compression);
+      const std::uint64_t fields = kFixedBytes - kRecordHeadBytes + 4 + compression.size() + 8;
+      return length <= left - kRecordHeadBytes && length >= fields && in.number<std::uint64_t>() == length - fields;
+    } catch (const FormatError&) {
+      return false;
+    }
+  }
+
+  [[nodiscard]] std::optional<std::uint64_t> nextChunk(std::uint64_t from) {
+    for (; from + kRecordHeadBytes < file_.size(); from += kRunBytes) {
+      const std::span<std::byte> window =
+          storage_.resize(static_cast<std::size_t>(std::min(kRunBytes, file_.size() - from)));
+      file_.read(from, window);
+      for (auto at = window.begin(); (at = std::find(at, window.end(), std::byte{0x06})) != window.end(); ++at) {
+        const std::uint64_t offset = from + static_cast<std::uint64_t>(at - window.begin());
+        if (offset + kRecordHeadBytes < file_.size() && looksLikeChunk(offset)) return offset;
+      }
+    }
+    return std::nullopt;
   }
 
   void take(const RecordPlace& place) {
@@ -65,8 +128,10 @@ class Scan {
     } else if (place.opcode == Opcode::kAttachment) {
       takeAttachment(place);
     } else if (place.opcode == Opcode::kMetadata) {
-      const Metadata metadata = decodeRecord(file_, place, options_, decodeMetadata);
-      index_.metadata.push_back({.offset = place.offset, .length = place.length(), .name = metadata.name});
+      guarded(place, [&](ByteView body) {
+        Metadata metadata = decodeMetadata(body);
+        index_.metadata.push_back({.offset = place.offset, .length = place.length(), .name = std::move(metadata.name)});
+      });
     }
   }
 
@@ -74,14 +139,16 @@ class Scan {
     // Enough for the head; the data after it are bounded by the record's own length.
     RecordPlace front = place;
     front.body_length = std::min(place.body_length, kAttachmentHeadBytes);
-    AttachmentHead head = decodeRecord(file_, front, options_, decodeAttachmentHead);
-    index_.attachments.push_back({.offset = place.offset,
-                                  .length = place.length(),
-                                  .log_time_ns = head.fields.log_time_ns,
-                                  .create_time_ns = head.fields.create_time_ns,
-                                  .data_size = head.data_size,
-                                  .name = std::move(head.fields.name),
-                                  .media_type = std::move(head.fields.media_type)});
+    guarded(front, [&](ByteView body) {
+      AttachmentHead head = decodeAttachmentHead(body);
+      index_.attachments.push_back({.offset = place.offset,
+                                    .length = place.length(),
+                                    .log_time_ns = head.fields.log_time_ns,
+                                    .create_time_ns = head.fields.create_time_ns,
+                                    .data_size = head.data_size,
+                                    .name = std::move(head.fields.name),
+                                    .media_type = std::move(head.fields.media_type)});
+    });
   }
 
   void closeRun() {
@@ -91,6 +158,7 @@ class Scan {
 
   /// Learns the schemas and channels of an extent and counts its messages: all of them or, when it is damaged, none.
   void takeExtent(Extent extent) {
+    if (options_.on_progress) options_.on_progress(extent.offset, file_.size());
     std::map<ChannelId, std::uint64_t> counts;
     const bool is_sound = loader_.guarded(extent, [&] {
       ByteReader in(loader_.load(extent, storage_));

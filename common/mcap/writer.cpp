@@ -231,6 +231,7 @@ void Writer::writeChunk() {
   chunk_indexes_.push_back(std::move(index));
   written_messages_ += std::exchange(chunk_messages_, 0);
   chunk_channels_.clear();
+  if (options_.sync_chunks) file_.sync();
 }
 
 void Writer::writePending() {

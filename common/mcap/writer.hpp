@@ -30,6 +30,7 @@ struct WriterOptions {
   int compression_level = 0;           // see Compressor
   std::size_t chunk_bytes = 1U << 20;  // a chunk is closed before it grows above this; a larger message gets its own
   bool has_crc = true;                 // CRCs of chunks, attachments, data section and summary
+  bool sync_chunks = false;            // each chunk waits for the storage device
   bool sync_on_close = true;           // close() waits for the storage device
   OutputFile::IfExists if_exists = OutputFile::IfExists::kRefuse;
 };

@@ -65,7 +65,7 @@ TEST_P(WriterTest, GivesBackWhatWasWritten) {
   EXPECT_EQ(reader.statistics().channel_message_counts.at(command), 334U);
   EXPECT_EQ(reader.statistics().start_time_ns, 0U);
   EXPECT_EQ(reader.statistics().end_time_ns, 999'000'000U);
-  EXPECT_TRUE(reader.dataCrcMatches());
+  EXPECT_EQ(reader.dataCrcMatches(), true);
 }
 
 TEST_P(WriterTest, SummaryAgreesWithWhatIsInTheData) {

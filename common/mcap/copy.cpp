@@ -1,0 +1,135 @@
+#include "mcap/copy.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace baton::mcap {
+namespace {
+
+/// What was lost, once for each place: passes over the file come across the same.
+class Losses {
+ public:
+  void add(const Damage& damage) { by_place_.try_emplace(damage.offset, damage); }
+  template <class Work>
+  void guard(std::uint64_t offset, std::uint64_t length, Work work) {
+    try {
+      work();
+    } catch (const FormatError& error) {
+      add({offset, length, error.what()});
+    }
+  }
+  [[nodiscard]] std::vector<Damage> list() const {
+    std::vector<Damage> list;
+    for (const auto& [offset, damage] : by_place_) list.push_back(damage);
+    return list;
+  }
+  [[nodiscard]] bool empty() const { return by_place_.empty(); }
+
+ private:
+  std::map<std::uint64_t, Damage> by_place_;
+};
+
+}  // namespace
+
+Copier::Copier(const std::filesystem::path& out, const WriterOptions& options) : out_(out), writer_(out, options) {}
+
+Copier::~Copier() {
+  if (is_finished_ || !std::filesystem::is_regular_file(out_)) return;
+  std::error_code ignored;
+  std::filesystem::remove(out_, ignored);
+}
+
+ChannelId Copier::channel(const Channel& channel, const Schema* schema) {
+  if (const auto known = known_.find(&channel); known != known_.end()) return known->second;
+  Channel copy = channel;
+  copy.schema_id = schema == nullptr ? kNoSchema : writer_.addSchema(schema->name, schema->encoding, schema->data);
+  const auto same = std::find_if(written_.begin(), written_.end(), [&](const Channel& one) {
+    copy.id = one.id;
+    return one == copy;
+  });
+  if (same == written_.end()) {
+    copy.id = writer_.addChannel(copy.topic, copy.message_encoding, copy.schema_id, copy.metadata);
+    written_.push_back(copy);
+  }
+  return known_[&channel] = copy.id;
+}
+
+void Copier::channels(const Reader& reader) {
+  for (const auto& [id, one] : reader.channels()) {
+    const auto schema = reader.schemas().find(one.schema_id);
+    channel(one, schema == reader.schemas().end() ? nullptr : &schema->second);
+  }
+  for (const auto& [id, schema] : reader.schemas()) writer_.addSchema(schema.name, schema.encoding, schema.data);
+}
+
+void Copier::message(const MessageView& message) {
+  writer_.write(channel(*message.channel, message.schema), message.sequence, message.log_time_ns,
+                message.publish_time_ns, message.data);
+}
+
+void Copier::attachment(const std::string& name, const AttachmentIndex& index, ByteView data) {
+  writer_.addAttachment(name, index.media_type, index.log_time_ns, index.create_time_ns, data);
+}
+
+void Copier::finish() {
+  writer_.close();
+  is_finished_ = true;
+}
+
+Recovery recover(const std::filesystem::path& in, const std::filesystem::path& out, const RecoverOptions& options) {
+  Recovery result;
+  Losses losses;
+  ReaderOptions reading = options.reader;
+  reading.on_damage = [&losses](const Damage& damage) { losses.add(damage); };
+  const auto tell = [&options](double part) {
+    if (options.progress) options.progress(part);
+  };
+  // A file without an index is read twice: its first half of the work is to find what is there.
+  double begun = 0.0;
+  reading.on_progress = [&](std::uint64_t done, std::uint64_t of) {
+    begun = 0.5;
+    tell(begun * static_cast<double>(done) / static_cast<double>(of));
+  };
+  const Reader reader(in, reading);
+  result.info = reader.info();
+  if (!result.info.is_complete && !result.info.has_all_data) {
+    const std::uint64_t end = result.info.complete_bytes;
+    losses.add({end, result.info.file_bytes - end, result.info.problem});
+  }
+
+  WriterOptions writing = options.writer;
+  writing.profile = result.info.header.profile;
+  Copier copy(out, writing);
+  copy.channels(reader);
+  const auto total = static_cast<double>(std::max<std::uint64_t>(1, reader.statistics().message_count));
+  reader.forEachMessage({.order = MessageFilter::Order::kFile}, [&](const MessageView& message) {
+    copy.message(message);
+    if (++result.messages % 0x4000 == 0) tell(begun + (1.0 - begun) * static_cast<double>(result.messages) / total);
+  });
+  // Last, when it is known whether something was lost, which is as true when it is one of them: first try them all.
+  std::vector<Metadata> metadata;
+  for (const MetadataIndex& index : reader.metadataIndexes()) {
+    losses.guard(index.offset, index.length, [&] { metadata.push_back(reader.readMetadata(index)); });
+  }
+  std::vector<const AttachmentIndex*> attachments;
+  for (const AttachmentIndex& index : reader.attachments()) {
+    losses.guard(index.offset, index.length, [&] {
+      (void)reader.readAttachment(index);
+      attachments.push_back(&index);
+    });
+  }
+  const auto nameOf = [&](const std::string& name) {
+    return losses.empty() || !options.lossy_name ? name : options.lossy_name(name);
+  };
+  for (const Metadata& one : metadata) copy.metadata(nameOf(one.name), one.values);
+  for (const AttachmentIndex* index : attachments) {
+    copy.attachment(nameOf(index->name), *index, reader.readAttachment(*index));
+  }
+  copy.finish();
+  result.attachments = attachments.size();
+  result.metadata = metadata.size();
+  result.lost = losses.list();
+  return result;
+}
+
+}  // namespace baton::mcap
