@@ -12,6 +12,7 @@ namespace baton {
 
 int runGuarded(const std::string& name, const std::function<ExitCode()>& body) {
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file at its limit is an error of a write, as on a full disk
   try {
     return static_cast<int>(body());
   } catch (const Error& error) {

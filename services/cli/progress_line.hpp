@@ -19,12 +19,15 @@ namespace baton {
 class ProgressLine {
  public:
   ProgressLine() = default;
-  ~ProgressLine() {
-    if (!last_.empty()) std::fprintf(stderr, "\r\033[K");
-  }
+  ~ProgressLine() { clear(); }
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
+  /// Makes room for other text.
+  void clear() {
+    if (!last_.empty()) std::fprintf(stderr, "\r\033[K");
+    last_.clear();
+  }
   void show(const std::string& text) {
     if (!is_terminal_ || text == last_) return;
     std::fprintf(stderr, "\r\033[K%s", text.c_str());

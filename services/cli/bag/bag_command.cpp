@@ -8,6 +8,10 @@ void addBagCommand(CLI::App& app, ExitCode& exit_code) {
   CLI::App* bag = app.add_subcommand("bag", "look into a recording");
   bag->require_subcommand(1);
   addBagInfo(*bag, exit_code);
+  addBagVerify(*bag, exit_code);
+  addBagRecover(*bag, exit_code);
+  addBagMerge(*bag, exit_code);
+  addBagCut(*bag, exit_code);
   addBagHash(*bag, exit_code);
 }
 

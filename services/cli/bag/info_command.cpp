@@ -13,19 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "bag/verdict.hpp"
 #include "base/error.hpp"
 #include "mcap/reader.hpp"
 #include "runtime/json.hpp"
 
 namespace baton {
 namespace {
-
-enum class Verdict {
-  kComplete,    // finished, and nothing is missing as far as the file itself can tell
-  kIncomplete,  // finished, but its certificate says that messages are missing, or it has none
-  kCut,         // ends in the middle
-  kDamaged      // parts of it cannot be read
-};
 
 /// One topic and type, all its writers together.
 struct TopicSummary {
@@ -73,26 +67,6 @@ Verdict verdictOn(const BagSummary& bag) {
   const bool needs_certificate = !bag.run.empty();  // a finished file of somebody else has none
   const bool is_certified = bag.certificate && valueOf(*bag.certificate, "complete") == "true";
   return is_certified || (!bag.certificate && !needs_certificate) ? Verdict::kComplete : Verdict::kIncomplete;
-}
-
-ExitCode exitCodeOf(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kComplete: return ExitCode::kOk;
-    case Verdict::kIncomplete:
-    case Verdict::kCut: return ExitCode::kFailed;
-    case Verdict::kDamaged: return ExitCode::kUsage;
-  }
-  return ExitCode::kUsage;
-}
-
-const char* nameOf(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kComplete: return "complete";
-    case Verdict::kIncomplete: return "incomplete";
-    case Verdict::kCut: return "cut";
-    case Verdict::kDamaged: return "damaged";
-  }
-  return "";
 }
 
 /// What the verdict rests on, in a sentence.

@@ -9,5 +9,9 @@ namespace baton {
 
 void addBagInfo(CLI::App& bag, ExitCode& exit_code);
 void addBagHash(CLI::App& bag, ExitCode& exit_code);
+void addBagVerify(CLI::App& bag, ExitCode& exit_code);
+void addBagRecover(CLI::App& bag, ExitCode& exit_code);
+void addBagMerge(CLI::App& bag, ExitCode& exit_code);
+void addBagCut(CLI::App& bag, ExitCode& exit_code);
 
 }  // namespace baton

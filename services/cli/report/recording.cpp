@@ -1,6 +1,7 @@
 #include "recording.hpp"
 
 #include <algorithm>
+#include <charconv>
 
 #include "runtime/recorded_messages.hpp"
 
@@ -25,6 +26,14 @@ std::string metadataValue(const mcap::Reader& reader, const std::string& record,
 
 bool isCertified(const mcap::Reader& reader) {
   return metadataValue(reader, "baton.certificate", "complete") == "true";
+}
+
+std::optional<unsigned> partIndex(const mcap::Reader& reader) {
+  const std::string text = metadataValue(reader, "baton.part", "index");
+  unsigned index = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return index;
 }
 
 std::uint64_t lastTakeBegin(const mcap::Reader& reader) { return lastTake(reader).begin_ns; }

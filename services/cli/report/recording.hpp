@@ -17,6 +17,9 @@ namespace baton {
 /// Complete, by the recording's own certificate.
 [[nodiscard]] bool isCertified(const mcap::Reader& reader);
 
+/// The place of the file among the parts of a recording that was split; nothing when it was not.
+[[nodiscard]] std::optional<unsigned> partIndex(const mcap::Reader& reader);
+
 /// The last take of a run: how often it has been reset before, and the log time from which on everything belongs to it;
 /// 0 when it never was.
 struct Take {

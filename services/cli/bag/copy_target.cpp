@@ -1,0 +1,41 @@
+#include "bag/copy_target.hpp"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "base/error.hpp"
+
+namespace baton {
+
+void addTarget(CLI::App& command, CopyTarget& target) {
+  command.add_option("out", target.file, "recording to make")->required();
+  command.add_flag("--overwrite", target.overwrite, "replace OUT if it is there");
+}
+
+mcap::WriterOptions optionsFor(const CopyTarget& target, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code ignored;
+    if (!std::filesystem::equivalent(input, target.file, ignored)) continue;
+    throw UsageError(target.file + " is the recording that is read: choose another name for the copy");
+  }
+  mcap::WriterOptions options;
+  options.library = "baton " BATON_VERSION;
+  if (target.overwrite) options.if_exists = mcap::OutputFile::IfExists::kReplace;
+  return options;
+}
+
+std::unique_ptr<mcap::Reader> openForCopy(const std::string& file) {
+  auto reader = std::make_unique<mcap::Reader>(file);
+  const mcap::FileInfo& info = reader->info();
+  if (!info.is_complete) {
+    std::fprintf(stderr, "%s is not whole, and is used as far as it goes: %s\n", file.c_str(), info.problem.c_str());
+  }
+  return reader;
+}
+
+std::string withoutClaim(const std::string& name) {
+  if (name == "baton.certificate") return "baton.original_certificate";
+  return name == "certificate.json" ? "original_certificate.json" : name;
+}
+
+}  // namespace baton

@@ -1,0 +1,31 @@
+/// What `bag recover`, `merge` and `cut` have in common: the file they make.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mcap/copy.hpp"
+
+namespace baton {
+
+struct CopyTarget {
+  std::string file;
+  bool overwrite = false;
+};
+
+/// OUT and --overwrite.
+void addTarget(CLI::App& command, CopyTarget& target);
+
+/// How the file is written. Throws UsageError when it is one of those that are read.
+[[nodiscard]] mcap::WriterOptions optionsFor(const CopyTarget& target, const std::vector<std::string>& inputs);
+
+/// Opens a recording that is to be copied; says on standard error when it is not whole. Throws what Reader throws.
+[[nodiscard]] std::unique_ptr<mcap::Reader> openForCopy(const std::string& file);
+
+/// The name of a metadata record or an attachment in a copy that is not the whole: its certificate holds for the
+/// original, and is called so.
+[[nodiscard]] std::string withoutClaim(const std::string& name);
+
+}  // namespace baton

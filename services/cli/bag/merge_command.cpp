@@ -1,0 +1,179 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "bag/copy_target.hpp"
+#include "bag/subcommands.hpp"
+#include "base/error.hpp"
+#include "dds/hash.hpp"
+#include "progress_line.hpp"
+#include "report/recording.hpp"
+#include "runtime/json.hpp"
+
+namespace baton {
+namespace {
+
+struct MergeRequest {
+  CopyTarget out;
+  std::vector<std::string> in;
+  bool json = false;
+};
+
+/// One of the recordings, and how far it has been read.
+struct Source {
+  std::string label;  // unique, for names
+  std::unique_ptr<mcap::Reader> reader;
+  std::unique_ptr<mcap::MessageCursor> cursor;
+  mcap::MessageView next;
+};
+
+std::vector<Source> openSources(const std::vector<std::string>& files) {
+  std::vector<Source> sources;
+  std::set<std::string> labels;
+  for (const std::string& file : files) {
+    const std::string stem = std::filesystem::path(file).stem().string();
+    Source source{.label = stem, .reader = openForCopy(file), .cursor = nullptr, .next = {}};
+    for (int i = 2; !labels.insert(source.label).second; ++i) source.label = fmt::format("{}-{}", stem, i);
+    sources.push_back(std::move(source));
+  }
+  return sources;
+}
+
+/// Together they are one recording that was split, none of it missing: what its certificate says holds for them.
+bool isWhole(const std::vector<Source>& sources) {
+  const std::string run = metadataValue(*sources.front().reader, "baton.run", "run");
+  std::set<unsigned> indexes;
+  for (const Source& source : sources) {
+    const auto index = partIndex(*source.reader);
+    const bool is_sound = source.reader->info().is_complete && index && *index < sources.size();
+    if (!is_sound || metadataValue(*source.reader, "baton.run", "run") != run) return false;
+    indexes.insert(*index);
+  }
+  return !run.empty() && indexes.size() == sources.size();
+}
+
+/// Names as they are, unless files have different things of one name: then each has its file's name in front. What is
+/// the same in several files is there once.
+class Names {
+ public:
+  void note(const std::string& name, std::uint64_t hash) { contents_[name].insert(hash); }
+  /// The name in the merged file; empty for something that is there already.
+  std::string take(const std::string& label, const std::string& name, std::uint64_t hash) {
+    const std::string result = contents_.at(name).size() > 1 ? label + "/" + name : name;
+    return taken_.insert({result, hash}).second ? result : "";
+  }
+
+ private:
+  std::map<std::string, std::set<std::uint64_t>> contents_;
+  std::set<std::pair<std::string, std::uint64_t>> taken_;
+};
+
+std::uint64_t hashOf(const mcap::StringMap& values) {
+  std::uint64_t hash = 0;
+  for (const auto& [key, value] : values) {
+    hash = dds::chainHash(dds::chainHash(hash, mcap::asBytes(key)), mcap::asBytes(value));
+  }
+  return hash;
+}
+
+/// Calls f(source, name, hash, write) for each metadata record and each attachment: write(name) puts it into the copy.
+template <class F>
+void forEachExtra(const std::vector<Source>& sources, bool is_whole, mcap::Copier* copy, const F& f) {
+  for (const Source& source : sources) {
+    const auto nameOf = [&](const std::string& name) { return is_whole ? name : withoutClaim(name); };
+    for (const mcap::Metadata& one : source.reader->metadata()) {
+      f(source, "metadata", nameOf(one.name), hashOf(one.values),
+        [&](const std::string& name) { copy->metadata(name, one.values); });
+    }
+    for (const mcap::AttachmentIndex& index : source.reader->attachments()) {
+      const mcap::Bytes data = source.reader->readAttachment(index);
+      f(source, "attachment", nameOf(index.name), dds::chainHash(0, data),
+        [&](const std::string& name) { copy->attachment(name, index, data); });
+    }
+  }
+}
+
+void copyExtras(const std::vector<Source>& sources, mcap::Copier& copy) {
+  const bool is_whole = isWhole(sources);
+  std::map<std::string, Names> names;  // by kind
+  forEachExtra(sources, is_whole, nullptr,
+               [&](const Source&, const std::string& kind, const auto& name, std::uint64_t hash, const auto&) {
+                 names[kind].note(name, hash);
+               });
+  forEachExtra(sources, is_whole, &copy,
+               [&](const Source& source, const std::string& kind, const std::string& name, std::uint64_t hash,
+                   const auto& write) {
+                 if (const std::string taken = names[kind].take(source.label, name, hash); !taken.empty()) write(taken);
+               });
+}
+
+void copyMessages(std::vector<Source>& sources, mcap::Copier& copy) {
+  std::uint64_t total = 1;
+  std::vector<Source*> waiting;  // a heap, the earliest in front; at equal times in the order of the files
+  const auto later = [](const Source* a, const Source* b) {
+    return a->next.log_time_ns != b->next.log_time_ns ? a->next.log_time_ns > b->next.log_time_ns : a > b;
+  };
+  for (Source& source : sources) {
+    copy.channels(*source.reader);
+    total += source.reader->statistics().message_count;
+    source.cursor = std::make_unique<mcap::MessageCursor>(source.reader->messages());
+    if (source.cursor->next(source.next)) waiting.push_back(&source);
+  }
+  std::make_heap(waiting.begin(), waiting.end(), later);
+  ProgressLine line;
+  while (!waiting.empty()) {
+    std::pop_heap(waiting.begin(), waiting.end(), later);
+    Source& first = *waiting.back();
+    copy.message(first.next);
+    if (copy.messages() % 0x4000 == 0) {
+      const double part = static_cast<double>(copy.messages()) / static_cast<double>(total);
+      line.show(fmt::format("merging {} {:3.0f} %", progressBar(part), 100.0 * part));
+    }
+    if (first.cursor->next(first.next)) {
+      std::push_heap(waiting.begin(), waiting.end(), later);
+    } else {
+      waiting.pop_back();
+    }
+  }
+}
+
+ExitCode merge(const MergeRequest& request) {
+  std::vector<Source> sources = openSources(request.in);
+  mcap::Copier copy(request.out.file, optionsFor(request.out, request.in));
+  copyExtras(sources, copy);
+  copyMessages(sources, copy);
+  copy.finish();
+  if (request.json) {
+    std::puts(toText({{"out", request.out.file}, {"files", request.in}, {"messages", copy.messages()}}).c_str());
+  } else {
+    fmt::print("merged      {} files into {}: {} messages\n", sources.size(), request.out.file, copy.messages());
+  }
+  return ExitCode::kOk;
+}
+
+}  // namespace
+
+void addBagMerge(CLI::App& bag, ExitCode& exit_code) {
+  const auto request = std::make_shared<MergeRequest>();
+  CLI::App* command = bag.add_subcommand("merge", "several recordings as one, in the order of their log times");
+  command->footer(
+      "Each writer keeps a channel of its own; metadata and attachments of one name that differ get the name of their\n"
+      "file in front. All parts of a recording that was split give the whole one, with its certificate; of anything\n"
+      "else no certificate holds, and it is kept under the name original_...\n"
+      "Exit codes: 0 done; 1 OUT could not be written; 2 damaged or not a recording (`bag recover` makes a sound "
+      "one);\n"
+      "3 a file cannot be opened, or OUT is there already or cannot be made.");
+  addTarget(*command, request->out);
+  command->add_option("in", request->in, "recordings (MCAP)")->required();
+  command->add_flag("--json", request->json, "as a JSON object");
+  command->callback([request, &exit_code] { exit_code = merge(*request); });
+}
+
+}  // namespace baton

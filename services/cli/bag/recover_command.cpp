@@ -1,0 +1,94 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "bag/copy_target.hpp"
+#include "bag/subcommands.hpp"
+#include "progress_line.hpp"
+#include "runtime/json.hpp"
+
+namespace baton {
+namespace {
+
+struct RecoverRequest {
+  std::string in;
+  CopyTarget out;
+  bool json = false;
+};
+
+std::uint64_t bytesOf(const std::vector<mcap::Damage>& lost) {
+  std::uint64_t bytes = 0;
+  for (const mcap::Damage& damage : lost) bytes += damage.length;
+  return bytes;
+}
+
+/// What the input was, in a sentence.
+std::string verdictOn(const mcap::Recovery& found) {
+  if (!found.lost.empty()) return fmt::format("{} of its bytes could not be read", bytesOf(found.lost));
+  if (found.info.is_complete && found.info.problem.empty()) return "it was whole, and is copied";
+  return "nothing was lost, it has its index again: " + found.info.problem;
+}
+
+void printText(const RecoverRequest& request, const mcap::Recovery& found) {
+  fmt::print("{}: {}\n", request.in, verdictOn(found));
+  for (const mcap::Damage& damage : found.lost) {
+    fmt::print("lost        {} bytes from byte {} on: {}\n", damage.length, damage.offset, damage.reason);
+  }
+  fmt::print("recovered   {}: {} messages, {} attachments, {} metadata records\n", request.out.file, found.messages,
+             found.attachments, found.metadata);
+}
+
+nlohmann::ordered_json toJson(const RecoverRequest& request, const mcap::Recovery& found) {
+  nlohmann::ordered_json lost = nlohmann::ordered_json::array();
+  for (const mcap::Damage& damage : found.lost) {
+    lost.push_back({{"from_B", damage.offset}, {"length_B", damage.length}, {"reason", damage.reason}});
+  }
+  return {{"file", request.in},
+          {"out", request.out.file},
+          {"whole", found.info.is_complete && found.info.problem.empty() && found.lost.empty()},
+          {"verdict", verdictOn(found)},
+          {"lost_B", bytesOf(found.lost)},
+          {"lost", lost},
+          {"messages", found.messages},
+          {"attachments", found.attachments},
+          {"metadata", found.metadata}};
+}
+
+ExitCode recover(const RecoverRequest& request) {
+  ProgressLine line;
+  mcap::RecoverOptions options;
+  options.writer = optionsFor(request.out, {request.in});
+  options.lossy_name = withoutClaim;
+  options.progress = [&line](double part) {
+    line.show(fmt::format("recovering {} {:3.0f} %", progressBar(part), 100.0 * part));
+  };
+  const mcap::Recovery found = mcap::recover(request.in, request.out.file, options);
+  line.clear();
+  if (request.json) {
+    std::puts(toText(toJson(request, found)).c_str());
+  } else {
+    printText(request, found);
+  }
+  return found.lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
+}
+
+}  // namespace
+
+void addBagRecover(CLI::App& bag, ExitCode& exit_code) {
+  const auto request = std::make_shared<RecoverRequest>();
+  CLI::App* command = bag.add_subcommand("recover", "make a finished recording of one that was cut or damaged");
+  command->footer(
+      "Copies all that can be read, and says what cannot: how many bytes, from where on, and why. A copy from which\n"
+      "something is missing does not claim to be complete: its certificate is kept under the name original_...\n"
+      "Exit codes: 0 nothing was lost; 1 OUT is there, and something was lost or writing it failed; 2 not a "
+      "recording;\n"
+      "3 IN cannot be opened, or OUT is there already or cannot be made.");
+  command->add_option("in", request->in, "recording (MCAP)")->required();
+  addTarget(*command, request->out);
+  command->add_flag("--json", request->json, "as a JSON object");
+  command->callback([request, &exit_code] { exit_code = recover(*request); });
+}
+
+}  // namespace baton

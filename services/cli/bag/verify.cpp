@@ -1,0 +1,213 @@
+#include "bag/verify.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <future>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "mcap/reader.hpp"
+#include "report/recording.hpp"
+#include "runtime/scenario.hpp"
+#include "runtime/service_options.hpp"
+
+namespace baton {
+namespace {
+
+/// One file of the recording.
+struct Part {
+  std::string file;
+  std::map<std::uint64_t, std::string> damage{};  // by place: each pass comes across the same
+  std::unique_ptr<mcap::Reader> reader{};
+  std::string run{};                // empty: not recorded by Baton
+  std::optional<unsigned> index{};  // in a recording that was split
+};
+
+/// Its metadata and attachments are read here, so that their damage shows.
+void open(Part& part, const std::function<void(double)>& progress) {
+  mcap::ReaderOptions options;
+  options.on_damage = [&part](const mcap::Damage& found) {
+    part.damage[found.offset] =
+        fmt::format("{}: {} bytes at byte {} cannot be read: {}", part.file, found.length, found.offset, found.reason);
+  };
+  options.on_progress = [&progress](std::uint64_t done, std::uint64_t of) {
+    progress(static_cast<double>(done) / static_cast<double>(of));
+  };
+  part.reader = std::make_unique<mcap::Reader>(part.file, options);
+  try {
+    part.run = metadataValue(*part.reader, "baton.run", "run");
+    part.index = partIndex(*part.reader);
+    for (const mcap::AttachmentIndex& attachment : part.reader->attachments()) {
+      (void)part.reader->readAttachment(attachment);
+    }
+  } catch (const mcap::FormatError& error) {
+    part.damage[part.reader->info().file_bytes] = error.what();
+  }
+}
+
+/// The parts in their order. What is wrong with the set goes to `missing`.
+std::vector<Part> openParts(const std::vector<std::string>& files, const std::function<void(double)>& progress,
+                            std::vector<std::string>& missing) {
+  std::vector<Part> parts(files.size());  // does not grow: the readers' callbacks know their places
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    parts[i].file = files[i];
+    open(parts[i], progress);
+  }
+  std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.index < b.index; });
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Part& part = parts[i];
+    if (parts.size() > 1 && (!part.index || part.run != parts[0].run || (i > 0 && part.index == parts[i - 1].index))) {
+      throw UsageError("expected the parts of one recording, each once; " + part.file + " is none of them");
+    }
+    const unsigned expected = i == 0 ? 0 : *parts[i - 1].index + 1;
+    if (part.index && *part.index != expected) {
+      missing.push_back(fmt::format("part {} is not among the files", expected));
+    }
+  }
+  return parts;
+}
+
+class Booking {
+ public:
+  Booking(Verification& result, const std::vector<Part>& parts, const std::function<void(double)>& progress)
+      : result_(result), progress_(progress) {
+    for (const Part& part : parts) expected_ += part.reader->statistics().message_count;
+  }
+
+  void book(const Part& part) {
+    const mcap::Reader& reader = *part.reader;
+    // Beside the messages, on another core; what one has read the other finds in the page cache.
+    std::future<std::optional<bool>> crc = std::async(std::launch::async, [&] { return reader.dataCrcMatches(); });
+    accounts_.clear();
+    reader.forEachMessage({.order = mcap::MessageFilter::Order::kFile},
+                          [this](const mcap::MessageView& message) { book(message); });
+    if (repeated_ > 0) {
+      result_.missing.push_back(fmt::format("{}: {} messages come twice, or behind later ones of their writer",
+                                            part.file, std::exchange(repeated_, 0)));
+    }
+    if (part.damage.empty() && reader.info().is_complete) compareCounts(part);
+    if (crc.get() == false && part.damage.empty()) {
+      result_.damage.push_back(part.file + ": the CRC of its data section is wrong: bytes between the chunks changed");
+    }
+  }
+
+ private:
+  struct Account {
+    Ledger::Stream* stream = nullptr;
+    std::uint64_t count = 0;  // in this part
+  };
+
+  void book(const mcap::MessageView& message) {
+    const auto id = static_cast<std::size_t>(message.channel->id);
+    if (id >= accounts_.size()) accounts_.resize(id + 1);
+    Account& account = accounts_[id];
+    if (account.count++ == 0) account.stream = streamOf(*message.channel);
+    if (++result_.messages % 0x4000 == 0) {
+      progress_(static_cast<double>(result_.messages) / static_cast<double>(expected_));
+    }
+    if (account.stream == nullptr) return;
+    // The file has the low half of the sequence number.
+    const ReceivedStream& so_far = account.stream->second;
+    const std::uint64_t last = so_far.count == 0 ? message.sequence : so_far.last_sequence;
+    const auto growth = static_cast<std::int32_t>(message.sequence - static_cast<std::uint32_t>(last));
+    const std::uint64_t sequence = last + static_cast<std::uint64_t>(std::int64_t{growth});
+    if (!result_.ledger.book(*account.stream, sequence, message.data)) ++repeated_;
+  }
+
+  Ledger::Stream* streamOf(const mcap::Channel& channel) {
+    const auto writer = channel.metadata.find("writer");
+    const auto guid = writer == channel.metadata.end() ? std::nullopt : dds::guidCalled(writer->second);
+    return guid ? &result_.ledger.streamOf({channel.topic, *guid}) : nullptr;
+  }
+
+  void compareCounts(const Part& part) {
+    for (const auto& [id, channel] : part.reader->channels()) {
+      const auto& counts = part.reader->statistics().channel_message_counts;
+      const auto listed = counts.find(id);
+      const std::uint64_t expected = listed == counts.end() ? 0 : listed->second;
+      const auto slot = static_cast<std::size_t>(id);
+      const std::uint64_t found = slot < accounts_.size() ? accounts_[slot].count : 0;
+      if (found == expected) continue;
+      result_.damage.push_back(fmt::format("{}: its index counts {} messages of {} where {} are", part.file, expected,
+                                           channel.topic, found));
+    }
+  }
+
+  Verification& result_;
+  const std::function<void(double)>& progress_;
+  std::uint64_t expected_ = 0;
+  std::uint64_t repeated_ = 0;
+  std::vector<Account> accounts_;  // [channel id], of the present part
+};
+
+/// From the first part that has it, or from the last: parts may repeat what they are of, and the last one is certified.
+std::optional<std::string> attached(const std::vector<Part>& parts, const std::string& name) {
+  std::optional<std::string> found;
+  for (const Part& part : parts) {
+    if (auto text = attachmentText(*part.reader, name)) found = std::move(text);
+  }
+  return found;
+}
+
+/// Everybody of whom a manifest is to be expected, by the scenario in the file.
+std::vector<std::string> writersOf(const std::vector<Part>& parts) {
+  const auto scenario = attached(parts, "scenario.yaml"), robot = attached(parts, "robot.yaml");
+  if (!scenario || !robot) throw UsageError("it has no scenario that says who took part");
+  return servicesBut(kRecorderName, parseScenario("scenario.yaml", *scenario, "robot.yaml", *robot));
+}
+
+void judge(const std::vector<Part>& parts, Verification& result) {
+  const auto add = [](std::vector<std::string>& to, const std::vector<std::string>& sentences) {
+    to.insert(to.end(), sentences.begin(), sentences.end());
+  };
+  for (const Part& part : parts) {
+    for (const auto& [offset, text] : part.damage) result.damage.push_back(text);
+    const mcap::FileInfo& info = part.reader->info();
+    if (info.problem.empty()) continue;
+    (info.is_complete ? result.damage : result.cuts).push_back(part.file + ": " + info.problem);
+  }
+  if (parts[0].run.empty()) {
+    result.missing.emplace_back("it was not recorded by Baton: nobody says what was sent");
+    return;
+  }
+  try {
+    for (const std::string& service : writersOf(parts)) result.ledger.expect(service);
+    add(result.missing, result.ledger.problems());
+    const auto certificate = attached(parts, "certificate.json");
+    if (!certificate) return result.missing.emplace_back("it has no certificate"), void();
+    add(result.missing, result.ledger.disagreements(*certificate));
+    const std::string verdict = metadataValue(*parts.back().reader, "baton.certificate", "complete");
+    if (verdict != "true" && result.missing.empty()) {
+      result.missing.push_back("its certificate says " +
+                               metadataValue(*parts.back().reader, "baton.certificate", "summary"));
+    }
+  } catch (const Error& error) {
+    result.missing.emplace_back(error.what());
+  }
+}
+
+}  // namespace
+
+Verdict Verification::verdict() const {
+  if (!damage.empty()) return Verdict::kDamaged;
+  if (!cuts.empty()) return Verdict::kCut;
+  return missing.empty() ? Verdict::kComplete : Verdict::kIncomplete;
+}
+
+Verification verifyRecording(const std::vector<std::string>& files, const std::function<void(double)>& progress) {
+  Verification result;
+  const std::vector<Part> parts = openParts(files, progress, result.missing);
+  Booking booking(result, parts, progress);
+  for (const Part& part : parts) {
+    result.files.push_back(part.file);
+    result.bytes += part.reader->info().file_bytes;
+    booking.book(part);
+  }
+  judge(parts, result);
+  return result;
+}
+
+}  // namespace baton

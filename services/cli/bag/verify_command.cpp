@@ -1,0 +1,77 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bag/subcommands.hpp"
+#include "bag/verify.hpp"
+#include "progress_line.hpp"
+#include "runtime/json.hpp"
+
+namespace baton {
+namespace {
+
+struct VerifyRequest {
+  std::vector<std::string> files;
+  bool json = false;
+};
+
+void printText(const Verification& found) {
+  fmt::print("{}: {}\n", fmt::join(found.files, ", "), nameOf(found.verdict()));
+  if (found.verdict() == Verdict::kComplete) {
+    fmt::print("            proven from the bytes: {} services vouch for what they sent, all of it is here\n",
+               found.ledger.manifests());
+    fmt::print("            and the certificate in the file agrees; every checksum is right\n");
+  }
+  for (const auto* findings : {&found.damage, &found.cuts, &found.missing}) {
+    for (const std::string& text : *findings) fmt::print("            {}\n", text);
+  }
+  fmt::print("messages    {} in {} streams\n", found.messages, found.ledger.streams().size());
+  fmt::print("size        {:.2f} MB\n", static_cast<double>(found.bytes) * 1e-6);
+}
+
+nlohmann::ordered_json toJson(const Verification& found) {
+  return {{"files", found.files},
+          {"verdict", nameOf(found.verdict())},
+          {"damage", found.damage},
+          {"cuts", found.cuts},
+          {"missing", found.missing},
+          {"manifests", found.ledger.manifests()},
+          {"messages", found.messages},
+          {"size_B", found.bytes},
+          {"streams", nlohmann::ordered_json::parse(found.ledger.certificate()).at("streams")}};
+}
+
+ExitCode verify(const VerifyRequest& request) {
+  ProgressLine line;
+  const Verification found = verifyRecording(request.files, [&line](double part) {
+    line.show(fmt::format("verifying {} {:3.0f} %", progressBar(part), 100.0 * part));
+  });
+  line.clear();
+  if (request.json) {
+    std::puts(toText(toJson(found)).c_str());
+  } else {
+    printText(found);
+  }
+  return exitCodeOf(found.verdict());
+}
+
+}  // namespace
+
+void addBagVerify(CLI::App& bag, ExitCode& exit_code) {
+  const auto request = std::make_shared<VerifyRequest>();
+  CLI::App* command = bag.add_subcommand("verify", "prove again, from its bytes, that a recording is complete");
+  command->footer(
+      "Reads everything and checks every checksum; counts and hashes each writer's messages again, and compares them\n"
+      "with what the services say they sent and with the certificate in the file.\n"
+      "Exit codes: 0 proven complete; 1 incomplete, cut or without a certificate; 2 damaged or not a recording;\n"
+      "3 cannot be opened.");
+  command->add_option("files", request->files, "a recording (MCAP); several: the parts of one that was split")
+      ->required();
+  command->add_flag("--json", request->json, "as a JSON object, with every stream");
+  command->callback([request, &exit_code] { exit_code = verify(*request); });
+}
+
+}  // namespace baton

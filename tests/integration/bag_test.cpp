@@ -1,0 +1,211 @@
+// Recordings of real runs in the hands of `baton bag`, and what is left of one whose recorder was killed or found no
+// room.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "mcap/reader.hpp"
+#include "support/live_run.hpp"
+#include "support/processes.hpp"
+#include "support/recordings.hpp"
+#include "support/short_contact.hpp"
+
+namespace baton::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Bag : public testing::Test {
+ protected:
+  [[nodiscard]] std::string record(const std::string& name, const std::string& scenario = shortContact()) const {
+    const std::string file = (bench.folder() / name).string();
+    const Finished run = bench.baton({"run", bench.write(name + ".yaml", scenario), "--out", file});
+    EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+    return file;
+  }
+  [[nodiscard]] std::string path(const std::string& name) const { return (bench.folder() / name).string(); }
+  [[nodiscard]] int verify(const std::string& file) const { return bench.baton({"bag", "verify", file}).exit_code; }
+
+  Bench bench;
+};
+
+TEST_F(Bag, ARunIsProvenCompleteAndSoIsACopyOfIt) {
+  const std::string file = record("run.mcap");
+  const Finished verified = bench.baton({"bag", "verify", file, "--json"});
+  EXPECT_EQ(verified.exit_code, 0) << verified.out << verified.err;
+  const nlohmann::json found = nlohmann::json::parse(verified.out);
+  EXPECT_EQ(found.at("verdict"), "complete");
+  EXPECT_EQ(found.at("manifests"), 7) << "plant, environment, trajectory and four controllers";
+  for (const auto& row : found.at("streams")) {
+    if (row.contains("sent")) {
+      EXPECT_EQ(row.at("sent"), row.at("count")) << row;
+      EXPECT_EQ(row.at("sent_hash"), row.at("stream_hash")) << row;
+    }
+  }
+
+  const nlohmann::json copied = bench.batonJson({"bag", "recover", file, path("copy.mcap"), "--json"});
+  EXPECT_TRUE(copied.at("whole")) << copied;
+  EXPECT_EQ(copied.at("lost_B"), 0);
+  EXPECT_EQ(verify(path("copy.mcap")), 0);
+  EXPECT_EQ(readStreams(path("copy.mcap")), readStreams(file));
+  EXPECT_EQ(bench.baton({"bag", "hash", file, path("copy.mcap")}).exit_code, 0);
+
+  // Nothing that is there is overwritten unless it is asked for, and never what is read.
+  EXPECT_EQ(bench.baton({"bag", "recover", file, path("copy.mcap")}).exit_code, 3);
+  EXPECT_EQ(bench.baton({"bag", "recover", file, path("copy.mcap"), "--overwrite"}).exit_code, 0);
+  EXPECT_EQ(bench.baton({"bag", "recover", file, file, "--overwrite"}).exit_code, 2);
+  EXPECT_EQ(verify(file), 0);
+  EXPECT_EQ(bench.baton({"bag", "recover", path("absent.mcap"), path("new.mcap")}).exit_code, 3);
+  EXPECT_EQ(bench.baton({"bag", "recover", bench.write("text.mcap", "hello"), path("new.mcap")}).exit_code, 2);
+  EXPECT_EQ(bench.baton({"bag", "recover", file, path("no/such/folder.mcap")}).exit_code, 3);
+  EXPECT_EQ(bench.baton({"bag", "recover", file, "/proc/nothing.mcap"}).exit_code, 3) << "where nobody may write";
+  EXPECT_EQ(bench.baton({"bag", "recover", file, "/dev/full", "--overwrite"}).exit_code, 1);
+  EXPECT_TRUE(fs::exists("/dev/full"));
+  EXPECT_FALSE(fs::exists(path("new.mcap")));
+}
+
+TEST_F(Bag, ACutAndADamagedRecordingAreFoundOutAndRecovered) {
+  const std::string file = record("run.mcap");
+  const std::uint64_t size = fs::file_size(file);
+  fs::copy_file(file, path("cut.mcap"));
+  fs::resize_file(path("cut.mcap"), size * 2 / 3);
+  EXPECT_EQ(verify(path("cut.mcap")), 1);
+  const Finished recovered = bench.baton({"bag", "recover", path("cut.mcap"), path("whole.mcap"), "--json"});
+  EXPECT_EQ(recovered.exit_code, 1) << "something was lost";
+  const nlohmann::json found = nlohmann::json::parse(recovered.out);
+  ASSERT_EQ(found.at("lost").size(), 1U) << found;
+  EXPECT_EQ(found.at("lost").at(0).at("from_B").get<std::uint64_t>() + found.at("lost_B").get<std::uint64_t>(),
+            size * 2 / 3);
+  EXPECT_EQ(readStreams(path("whole.mcap")), readStreams(path("cut.mcap")));
+  EXPECT_EQ(verify(path("whole.mcap")), 1) << "it is readable, and still not complete";
+  EXPECT_EQ(bench.baton({"bag", "info", path("whole.mcap")}).exit_code, 1);
+
+  fs::copy_file(file, path("damaged.mcap"));
+  {
+    std::fstream bytes(path("damaged.mcap"), std::ios::binary | std::ios::in | std::ios::out);
+    bytes.seekp(static_cast<std::streamoff>(size / 2));
+    bytes << "ruined";
+  }
+  EXPECT_EQ(verify(path("damaged.mcap")), 2);
+  EXPECT_EQ(bench.baton({"bag", "recover", path("damaged.mcap"), path("rest.mcap")}).exit_code, 1);
+  EXPECT_EQ(verify(path("rest.mcap")), 1) << "it has no certificate any more";
+}
+
+TEST_F(Bag, RunsAreMergedAndKeptApart) {
+  const std::string one = record("one.mcap"), two = record("two.mcap");
+  const nlohmann::json merged = bench.batonJson({"bag", "merge", path("both.mcap"), one, two, "--json"});
+  const mcap::Reader first(one), second(two), both(path("both.mcap"));
+  EXPECT_EQ(merged.at("messages"), both.statistics().message_count);
+  EXPECT_EQ(both.statistics().message_count, first.statistics().message_count + second.statistics().message_count);
+  EXPECT_EQ(both.channels().size(), first.channels().size() + second.channels().size());
+  EXPECT_EQ(both.schemas().size(), first.schemas().size());
+  std::uint64_t latest = 0;
+  both.forEachMessage({.order = mcap::MessageFilter::Order::kFile}, [&](const mcap::MessageView& message) {
+    ASSERT_GE(message.log_time_ns, latest);
+    latest = message.log_time_ns;
+  });
+  std::set<std::string> names;
+  for (const mcap::Metadata& record : both.metadata()) names.insert(record.name);
+  for (const mcap::AttachmentIndex& attachment : both.attachments()) names.insert(attachment.name);
+  EXPECT_EQ(names,
+            (std::set<std::string>{"one/baton.run", "two/baton.run", "baton.original_certificate", "scenario.yaml",
+                                   "robot.yaml", "one/original_certificate.json", "two/original_certificate.json"}));
+  EXPECT_EQ(verify(path("both.mcap")), 1) << "no certificate holds for two runs";
+}
+
+TEST_F(Bag, APartIsCutOutAndSaysSo) {
+  const std::string file = record("run.mcap");
+  const mcap::Reader whole(file);
+  const std::uint64_t begin = whole.statistics().start_time_ns, end = whole.statistics().end_time_ns;
+  const double half_s = static_cast<double>(end - begin) * 0.5e-9;
+  const nlohmann::json cut =
+      bench.batonJson({"bag", "cut", file, path("part.mcap"), "--from", std::to_string(half_s / 2), "--to",
+                       std::to_string(half_s), "--topics", "plant_state,contact", "--json"});
+  const mcap::Reader part(path("part.mcap"));
+  EXPECT_GT(part.statistics().message_count, 0U);
+  EXPECT_EQ(part.statistics().message_count, cut.at("messages"));
+  EXPECT_EQ(cut.at("messages").get<std::uint64_t>() + cut.at("left_out").get<std::uint64_t>(),
+            whole.statistics().message_count);
+  std::set<std::string> topics;
+  for (const auto& [id, channel] : part.channels()) topics.insert(channel.topic);
+  EXPECT_EQ(topics, (std::set<std::string>{"contact", "plant_state"}));
+  EXPECT_GE(part.statistics().start_time_ns, begin + (end - begin) / 4 - 1000);
+  EXPECT_LE(part.statistics().end_time_ns, begin + (end - begin) / 2 + 1000);
+  std::set<std::string> names;
+  for (const mcap::Metadata& record : part.metadata()) names.insert(record.name);
+  EXPECT_EQ(names, (std::set<std::string>{"baton.run", "baton.original_certificate", "baton.cut"}));
+  EXPECT_EQ(verify(path("part.mcap")), 1);
+  EXPECT_EQ(bench.baton({"bag", "info", path("part.mcap")}).exit_code, 1);
+
+  EXPECT_EQ(bench.baton({"bag", "cut", file, path("none.mcap")}).exit_code, 2) << "nothing is to be cut";
+  const Finished unknown = bench.baton({"bag", "cut", file, path("none.mcap"), "--topics", "plant_stat"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_NE(unknown.err.find("did you mean 'plant_state'"), std::string::npos) << unknown.err;
+  EXPECT_EQ(bench.baton({"bag", "cut", file, path("none.mcap"), "--from", "2", "--to", "1"}).exit_code, 2);
+  EXPECT_FALSE(fs::exists(path("none.mcap")));
+}
+
+/// kill -9 of the recorder when so much is in its file, at a place that is any.
+class KilledRecorder : public testing::TestWithParam<unsigned> {};
+
+TEST_P(KilledRecorder, LeavesARecordingThatIsMadeWholeAgain) {
+  std::mt19937 generator(GetParam());
+  const std::uint64_t bytes = 50'000 + generator() % 1'500'000;
+  const Bench bench;
+  const LiveRun run(bench, endlessContact());
+  ASSERT_TRUE(eventually([&] { return fs::file_size(run.recording) >= bytes; }));
+  ASSERT_EQ(kill(run.pidOf("recorder"), SIGKILL), 0);
+  std::ignore = run.result();
+  EXPECT_EQ(bench.baton({"bag", "verify", run.recording}).exit_code, 1) << "cut, not damaged";
+
+  const std::string out = (bench.folder() / "whole.mcap").string();
+  const Finished recovered = bench.baton({"bag", "recover", run.recording, out});
+  EXPECT_EQ(recovered.exit_code == 0 || recovered.exit_code == 1, true) << recovered.err;
+  const mcap::Reader reader(out);
+  EXPECT_TRUE(reader.info().is_complete);
+  EXPECT_TRUE(reader.info().has_summary);
+  EXPECT_EQ(readStreams(out), readStreams(run.recording));
+  // Of each writer of the loop all of it, from its first message up to some one.
+  std::map<mcap::ChannelId, std::uint32_t> latest;
+  reader.forEachMessage({.topics = {"plant_state", "reference", "contact", "joint_command"}},
+                        [&](const mcap::MessageView& message) {
+                          std::uint32_t& last = latest[message.channel->id];
+                          ASSERT_EQ(message.sequence, last + 1) << message.channel->topic;
+                          last = message.sequence;
+                        });
+  EXPECT_GE(latest.size(), 4U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, KilledRecorder, testing::Range(1U, 7U));
+
+/// A run whose files may not grow beyond a limit, as on a disk that is full.
+TEST_F(Bag, ARecordingThatFindsNoRoomEndsWithAWordAndIsReadableUpToThere) {
+  const std::string file = path("full.mcap");
+  const std::string run = "'" + (programFolder() / "baton").string() + "' run '" +
+                          bench.write("short.yaml", shortContact()) + "' --domain " + std::to_string(bench.domain()) +
+                          " --out '" + file + "'";
+  const Finished finished = runProgram("/bin/sh", {"-c", "ulimit -f 200; exec " + run}, bench.folder());  // of 512 B
+  EXPECT_EQ(finished.exit_code, 1) << finished.out << finished.err;
+  EXPECT_NE((finished.out + finished.err).find("File too large"), std::string::npos) << finished.out << finished.err;
+  EXPECT_TRUE(processesWith(bench.folder().string()).empty());
+  EXPECT_EQ(fs::file_size(file), 200U * 512);
+  EXPECT_EQ(verify(file), 1);
+  EXPECT_EQ(bench.baton({"bag", "recover", file, path("whole.mcap")}).exit_code, 1);
+  EXPECT_GT(mcap::Reader(path("whole.mcap")).statistics().message_count, 0U);
+}
+
+TEST_F(Bag, ACopyThatFindsNoRoomIsNotLeftLyingAbout) {
+  const std::string file = record("run.mcap");
+  const std::string recover =
+      "'" + (programFolder() / "baton").string() + "' bag recover '" + file + "' '" + path("copy.mcap") + "'";
+  const Finished finished = runProgram("/bin/sh", {"-c", "ulimit -f 100; exec " + recover}, bench.folder());
+  EXPECT_EQ(finished.exit_code, 1) << finished.out << finished.err;
+  EXPECT_NE(finished.err.find("File too large"), std::string::npos) << finished.err;
+  EXPECT_FALSE(fs::exists(path("copy.mcap")));
+}
+
+}  // namespace
+}  // namespace baton::test

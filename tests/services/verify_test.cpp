@@ -1,0 +1,176 @@
+/// Completeness proven again from the bytes, and every way in which it is not.
+#include "bag/verify.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "base/error.hpp"
+#include "mcap/writer.hpp"
+#include "support/processes.hpp"
+#include "support/recorded_files.hpp"
+
+namespace baton::test {
+namespace {
+
+bool mentions(const std::vector<std::string>& sentences, const std::string& words) {
+  return std::any_of(sentences.begin(), sentences.end(),
+                     [&](const std::string& s) { return s.find(words) != std::string::npos; });
+}
+
+std::string all(const Verification& found) {
+  std::string text;
+  for (const auto* list : {&found.damage, &found.cuts, &found.missing}) {
+    for (const std::string& sentence : *list) text += sentence + "\n";
+  }
+  return text;
+}
+
+class VerifyTest : public testing::Test {
+ protected:
+  [[nodiscard]] std::vector<std::string> write(const RecordingPlan& plan = {}) const {
+    return writeRecording(bench_.folder(), "run", plan);
+  }
+  static Verification verify(const std::vector<std::string>& files) {
+    return verifyRecording(files, [](double) {});
+  }
+  [[nodiscard]] Verification verifyWith(const RecordingPlan& plan) const { return verify(write(plan)); }
+
+  Bench bench_;
+};
+
+TEST_F(VerifyTest, AWholeRecordingIsProvenComplete) {
+  const Verification found = verifyWith({});
+  EXPECT_EQ(found.verdict(), Verdict::kComplete) << all(found);
+  EXPECT_EQ(all(found), "");
+  EXPECT_EQ(found.ledger.manifests(), 3U);
+  EXPECT_EQ(found.messages, 3 * 200U + 3U);
+  EXPECT_EQ(found.ledger.streams().size(), 6U);
+}
+
+TEST_F(VerifyTest, WhatTheRecorderSawMissingIsMissing) {
+  for (const std::uint64_t at : {1U, 100U, 200U}) {
+    const Verification found = verifyWith({.leave_out = at});
+    EXPECT_EQ(found.verdict(), Verdict::kIncomplete) << at;
+    EXPECT_TRUE(mentions(found.missing, "200 samples sent, 199 recorded")) << all(found);
+    EXPECT_FALSE(mentions(found.missing, "certificate")) << "it says the same\n" << all(found);
+  }
+}
+
+TEST_F(VerifyTest, ACertificateThatSaysMoreThanTheBytesIsNotBelieved) {
+  for (const RecordingPlan& plan :
+       {RecordingPlan{.leave_out = 100, .is_seen = false}, RecordingPlan{.change = 100, .is_seen = false}}) {
+    const Verification found = verifyWith(plan);
+    EXPECT_EQ(found.verdict(), Verdict::kIncomplete);
+    EXPECT_TRUE(mentions(found.missing, "the certificate says complete, the bytes do not")) << all(found);
+    EXPECT_TRUE(mentions(found.missing, "the certificate says otherwise of state")) << all(found);
+  }
+}
+
+TEST_F(VerifyTest, OtherBytesThanThoseSentAreNoticed) {
+  const Verification found = verifyWith({.change = 7});
+  EXPECT_EQ(found.verdict(), Verdict::kIncomplete);
+  EXPECT_TRUE(mentions(found.missing, "the recorded bytes are not those sent")) << all(found);
+}
+
+TEST_F(VerifyTest, MessagesThatComeTwiceAreNoticed) {
+  const Verification found = verifyWith({.repeat = 7});
+  EXPECT_EQ(found.verdict(), Verdict::kIncomplete);
+  EXPECT_TRUE(mentions(found.missing, "1 messages come twice")) << all(found);
+}
+
+TEST_F(VerifyTest, WithoutTheWordOfEverybodyNothingIsProven) {
+  EXPECT_TRUE(mentions(verifyWith({.silent = "plant"}).missing, "plant sent no manifest"));
+  EXPECT_TRUE(mentions(verifyWith({.has_certificate = false}).missing, "it has no certificate"));
+  const Verification dropped = verifyWith({.dropped = 3});
+  EXPECT_EQ(dropped.verdict(), Verdict::kIncomplete) << "the bytes cannot tell, the certificate does";
+  EXPECT_TRUE(mentions(dropped.missing, "3 samples came faster")) << all(dropped);
+}
+
+TEST_F(VerifyTest, SequenceNumbersMayOutgrowTheirFieldInTheFile) {
+  const Verification found = verifyWith({.first_sequence = 0xFFFF'FFF0});
+  EXPECT_EQ(found.verdict(), Verdict::kComplete) << all(found);
+}
+
+TEST_F(VerifyTest, PartsAreBookedAsOneInWhateverOrderTheyAreGiven) {
+  std::vector<std::string> files = write({.parts = 4});
+  ASSERT_EQ(files.size(), 4U);
+  EXPECT_EQ(verify(files).verdict(), Verdict::kComplete) << all(verify(files));
+  std::swap(files[0], files[3]);
+  std::swap(files[0], files[1]);
+  const Verification found = verify(files);
+  EXPECT_EQ(found.verdict(), Verdict::kComplete) << all(found);
+  EXPECT_TRUE(std::is_sorted(found.files.begin() + 1, found.files.end()));
+}
+
+TEST_F(VerifyTest, APartThatIsMissingIsNamed) {
+  const std::vector<std::string> files = write({.parts = 4});
+  for (std::size_t left_out = 0; left_out < 4; ++left_out) {
+    std::vector<std::string> some = files;
+    some.erase(some.begin() + static_cast<std::ptrdiff_t>(left_out));
+    const Verification found = verify(some);
+    EXPECT_EQ(found.verdict(), Verdict::kIncomplete) << left_out;
+    const std::string words = left_out == 3 ? "no certificate" : "part " + std::to_string(left_out) + " is not among";
+    EXPECT_TRUE(mentions(found.missing, words)) << all(found);
+  }
+}
+
+TEST_F(VerifyTest, FilesThatAreNotPartsOfOneRecordingAreRefused) {
+  const std::vector<std::string> files = write({.parts = 2}),
+                                 others = writeRecording(bench_.folder(), "other", {.parts = 2});
+  EXPECT_THROW(verify({files[0], files[0]}), UsageError);
+  EXPECT_THROW(verify({files[0], others[1]}), UsageError);
+  const std::string single = writeRecording(bench_.folder(), "single")[0];
+  EXPECT_THROW(verify({single, files[0]}), UsageError);
+  EXPECT_THROW(verify({bench_.write("text.mcap", "hello")}), UsageError);
+  EXPECT_THROW(verify({(bench_.folder() / "absent.mcap").string()}), UnavailableError);
+}
+
+TEST_F(VerifyTest, ARecordingOfSomebodyElseIsNotProven) {
+  const std::string file = (bench_.folder() / "foreign.mcap").string();
+  {
+    mcap::Writer writer(file);
+    writer.write(writer.addChannel("pose", "cdr", mcap::kNoSchema), 1, 1, 1, {});
+    writer.close();
+  }
+  const Verification found = verify({file});
+  EXPECT_EQ(found.verdict(), Verdict::kIncomplete);
+  EXPECT_TRUE(mentions(found.missing, "not recorded by Baton")) << all(found);
+}
+
+/// Every byte counts: whichever is changed, the recording is not proven any more.
+TEST_F(VerifyTest, AnyChangedByteIsFound) {
+  const std::string file = write()[0];
+  const auto size = static_cast<std::streamoff>(std::filesystem::file_size(file));
+  std::fstream bytes(file, std::ios::binary | std::ios::in | std::ios::out);
+  const auto change = [&](std::streamoff at) {
+    bytes.seekg(at);
+    const int value = bytes.get();
+    bytes.seekp(at);
+    bytes.put(static_cast<char>(value ^ 0x04));
+    bytes.flush();
+  };
+  for (std::streamoff at = 0; at < size; at += 7) {
+    SCOPED_TRACE("byte " + std::to_string(at) + " of " + std::to_string(size));
+    change(at);
+    try {
+      const Verdict verdict = verify({file}).verdict();
+      EXPECT_NE(verdict, Verdict::kComplete);
+    } catch (const UsageError&) {  // not a recording any more
+    }
+    change(at);
+  }
+  EXPECT_EQ(verify({file}).verdict(), Verdict::kComplete);
+}
+
+TEST_F(VerifyTest, ACutRecordingIsCut) {
+  const std::string file = write()[0];
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 1);
+  const Verification found = verify({file});
+  EXPECT_EQ(found.verdict(), Verdict::kCut) << "all messages are there, but it does not end as it should";
+  EXPECT_TRUE(found.missing.empty()) << all(found);
+}
+
+}  // namespace
+}  // namespace baton::test
