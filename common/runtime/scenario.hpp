@@ -76,7 +76,9 @@ struct RecordingConfig {
   std::string compression = "zstd";  // none, lz4, zstd
   std::uint64_t credit_steps = 256;  // lockstep: how far the plant may run past the recorder
   std::uint64_t checkpoint_steps =
-      0;  // every so many steps all parts save their state, for branches; 0: at the end alone
+      0;                     // every so many steps all parts save their state, for branches; 0: at the end alone
+  bool sync_chunks = false;  // every chunk waits for the storage device
+  double sync_s = 0.0;       // all that is in the file does, so often; 0: at the end alone
 };
 
 struct Scenario {

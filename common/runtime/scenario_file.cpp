@@ -171,19 +171,28 @@ ControllerConfig readController(const YamlNode& node, const Scenario& scenario) 
   return controller;
 }
 
+/// none, chunk, or seconds.
+void readSync(const YamlNode& node, RecordingConfig& recording) {
+  const std::string word = node.isScalar() ? node.text() : "";
+  if (word == "none") return;
+  recording.sync_chunks = word == "chunk";
+  if (!recording.sync_chunks) recording.sync_s = node.number({0.01, 3600.0, "s, or none, or chunk"});
+}
+
 RecordingConfig readRecording(const YamlMap& map, const Scenario& scenario) {
   RecordingConfig recording;
   constexpr double kCheckpoint_s = 1.0;
   recording.checkpoint_steps = std::max<std::uint64_t>(1, std::llround(kCheckpoint_s / scenario.stepSeconds()));
   const auto node = map.find("recording");
   if (!node) return recording;
-  const YamlMap given = node->map({"enabled", "compression", "credit_steps", "checkpoint_s"});
+  const YamlMap given = node->map({"enabled", "compression", "credit_steps", "checkpoint_s", "sync"});
   if (const auto every = given.find("checkpoint_s")) recording.checkpoint_steps = readSteps(*every, scenario);
   recording.enabled = given.booleanOr("enabled", recording.enabled);
   if (const auto word = given.find("compression")) {
     recording.compression = word->oneOf<std::string>({{"none", "none"}, {"lz4", "lz4"}, {"zstd", "zstd"}});
   }
   recording.credit_steps = static_cast<std::uint64_t>(given.integerOr("credit_steps", 16, 512, 256));
+  if (const auto sync = given.find("sync")) readSync(*sync, recording);
   return recording;
 }
 

@@ -59,7 +59,7 @@ swaps:
   - {at_s: 1.0, to: impedance}
   - {at_s: 4.0, to: force}
 baton: {margin_steps: 6, blend_s: 0.15, max_effort_step: 40, max_effort_rate: [300, 200, 100], fallback: [impedance, tracking]}
-recording: {enabled: false, compression: lz4, credit_steps: 64}
+recording: {enabled: false, compression: lz4, credit_steps: 64, sync: 0.5}
 )";
 
 Scenario parse(const std::string& text) { return rppScenario("trial.yaml", text); }
@@ -131,6 +131,8 @@ TEST(ScenarioFile, GivesEachFieldItsPlace) {
   EXPECT_FALSE(s.recording.enabled);
   EXPECT_EQ(s.recording.compression, "lz4");
   EXPECT_EQ(s.recording.credit_steps, 64u);
+  EXPECT_EQ(s.recording.sync_s, 0.5);
+  EXPECT_FALSE(s.recording.sync_chunks);
 }
 
 TEST(ScenarioFile, CompletesTheParametersOfEachLaw) {
@@ -383,6 +385,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadInput{"Yes", "enabled: false", "enabled: yes", "recording", "true or false", "'yes'"},
         BadInput{"Zip", "compression: lz4", "compression: zip", "recording", "one of none, lz4, zstd", "'zip'"},
+        BadInput{"Sync", "sync: 0.5", "sync: often", "recording", "s, or none, or chunk", "'often'"},
+        BadInput{"SyncNever", "sync: 0.5", "sync: 0", "recording", "s, or none, or chunk", "'0'"},
         BadInput{"LittleCredit", "credit_steps: 64", "credit_steps: 15", "recording", "from 16 to 512", "'15'"},
         BadInput{"MuchCredit", "credit_steps: 64", "credit_steps: 513", "recording", "from 16 to 512", "'513'"}),
     nameOf);
