@@ -60,22 +60,14 @@ void forLengthsBelow(std::size_t size, const F& f) {
 template <class T>
 class CodecTest : public testing::Test {};
 
-using AllTypes =
-    testing::Types<msg::Quaternion, msg::PlantState, msg::Contact, msg::Reference, msg::JointCommand, msg::Checkpoint,
-                   msg::SimRequest, msg::SimReply, msg::SimStatus, msg::TimeSpread, msg::StepSpread, msg::TimingStatus,
-                   msg::Rewind, msg::RewindAck, msg::SwapRequest, msg::SwapPlan, msg::SwapAck, msg::SwapOutcome,
-                   msg::SwapReport, msg::BatonMember, msg::BatonStatus, msg::ControllerStatus, msg::Parameter,
-                   msg::ParameterStatus, msg::ParameterValue, msg::ParameterRequest, msg::ParameterReply, msg::Decision,
-                   msg::LaunchRequest, msg::LaunchReply, msg::ServiceStatus, msg::Event, msg::StreamManifest,
-                   msg::ServiceManifest, msg::RecorderStatus, msg::ReplayStatus>;
-TYPED_TEST_SUITE(CodecTest, AllTypes);
+TYPED_TEST_SUITE(CodecTest, test::AllTypes);
 
 template <class... Types>
 constexpr std::size_t countOf(testing::Types<Types...>) {
   return sizeof...(Types);
 }
 
-TEST(Codec, EveryTypeOfTheIdlIsTestedHere) { EXPECT_EQ(msg::allIdlTexts().size(), countOf(AllTypes{})); }
+TEST(Codec, EveryTypeOfTheIdlIsTestedHere) { EXPECT_EQ(msg::allIdlTexts().size(), countOf(test::AllTypes{})); }
 
 TYPED_TEST(CodecTest, AFullMessageSurvivesTheRoundTrip) {
   const auto message = test::full<TypeParam>();

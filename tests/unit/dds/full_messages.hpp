@@ -2,8 +2,9 @@
 /// here; the codec's tests notice when it is missing.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "msg/checkpoint.h"
@@ -16,6 +17,15 @@
 #include "msg/swap.h"
 
 namespace baton::test {
+
+using AllTypes =
+    testing::Types<msg::Quaternion, msg::PlantState, msg::Contact, msg::Reference, msg::JointCommand, msg::Checkpoint,
+                   msg::SimRequest, msg::SimReply, msg::SimStatus, msg::TimeSpread, msg::StepSpread, msg::TimingStatus,
+                   msg::Rewind, msg::RewindAck, msg::SwapRequest, msg::SwapPlan, msg::SwapAck, msg::SwapOutcome,
+                   msg::SwapReport, msg::BatonMember, msg::BatonStatus, msg::ControllerStatus, msg::Parameter,
+                   msg::ParameterStatus, msg::ParameterValue, msg::ParameterRequest, msg::ParameterReply, msg::Decision,
+                   msg::LaunchRequest, msg::LaunchReply, msg::ServiceStatus, msg::Event, msg::StreamManifest,
+                   msg::ServiceManifest, msg::RecorderStatus, msg::ReplayStatus>;
 
 inline constexpr std::uint64_t kId = 0xFEDC'BA98'7654'3210;
 inline constexpr std::int64_t kTime = -0x0123'4567'89AB'CDEF;

@@ -1,0 +1,123 @@
+#include "schema/idl_lexer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "schema/error.hpp"
+#include "schema/limits.hpp"
+
+namespace baton::schema {
+namespace {
+
+// Words with a meaning of their own, those of what is not supported too: nothing can be called so.
+constexpr std::array<std::string_view, 38> kKeywords{
+    "module", "struct", "union", "switch",  "case",    "default", "enum",      "typedef",  "const",  "sequence",
+    "string", "TRUE",   "FALSE", "boolean", "octet",   "char",    "int8",      "uint8",    "int16",  "uint16",
+    "int32",  "uint32", "int64", "uint64",  "short",   "long",    "unsigned",  "float",    "double", "wstring",
+    "wchar",  "fixed",  "map",   "any",     "bitmask", "bitset",  "interface", "valuetype"};
+
+bool isLetter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+
+template <class Is>
+std::size_t lengthOf(std::string_view text, Is is) {
+  return static_cast<std::size_t>(std::find_if_not(text.begin(), text.end(), is) - text.begin());
+}
+
+}  // namespace
+
+void failAt(std::size_t line, const std::string& expected, const std::string& found) {
+  throw IdlError("line " + std::to_string(line) + ": expected " + expected + ", found " + found);
+}
+
+Token IdlLexer::take(Token::Kind kind, std::size_t length) {
+  const Token token{kind, rest_.substr(0, length), line_};
+  rest_.remove_prefix(length);
+  return token;
+}
+
+void IdlLexer::skipBlanks() {
+  while (!rest_.empty()) {
+    std::size_t length = 0;
+    if (std::isspace(static_cast<unsigned char>(rest_.front())) != 0) {
+      length = 1;
+    } else if (rest_.starts_with("//")) {
+      length = std::min(rest_.find('\n'), rest_.size());
+    } else if (rest_.starts_with("/*")) {
+      const std::size_t end = rest_.find("*/", 2);
+      if (end == std::string_view::npos) failAt(line_, "the end of a comment", "the end of the text");
+      length = end + 2;
+    } else {
+      return;
+    }
+    line_ += static_cast<std::size_t>(std::ranges::count(rest_.substr(0, length), '\n'));
+    rest_.remove_prefix(length);
+  }
+}
+
+Token IdlLexer::read() {
+  skipBlanks();
+  if (rest_.empty()) return {Token::Kind::kEnd, rest_, line_};
+  const char first = rest_.front();
+  if (isLetter(first)) {
+    return take(Token::Kind::kWord, lengthOf(rest_, [](char c) { return isLetter(c) || isDigit(c); }));
+  }
+  if (isDigit(first) || (first == '.' && rest_.size() > 1 && isDigit(rest_[1]))) {
+    // With whatever is written to it: what is no number is refused whole. A sign may follow an exponent.
+    char before = 0;
+    return take(Token::Kind::kNumber, lengthOf(rest_, [&before](char c) {
+                  const bool is_exponent_sign = (c == '+' || c == '-') && (before == 'e' || before == 'E');
+                  before = c;
+                  return isLetter(c) || isDigit(c) || c == '.' || is_exponent_sign;
+                }));
+  }
+  if (first == '"') {
+    const std::size_t end = rest_.find_first_of("\"\n\\", 1);
+    if (end == std::string_view::npos || rest_[end] == '\n') failAt(line_, "a closing '\"'", "the end of the line");
+    if (rest_[end] == '\\') failAt(line_, "a string without escapes", "'\\'");
+    rest_.remove_prefix(1);
+    const Token token = take(Token::Kind::kString, end - 1);
+    rest_.remove_prefix(1);
+    return token;
+  }
+  if (rest_.starts_with("::")) return take(Token::Kind::kSign, 2);
+  if (std::string_view("{}[]()<>;:,=@+-").find(first) != std::string_view::npos) return take(Token::Kind::kSign, 1);
+  if (first == '#') failAt(line_, "a text without preprocessor lines", "'#'");
+  failAt(line_, "IDL", "a character that has no meaning in it (code " + std::to_string(static_cast<int>(first)) + ")");
+}
+
+bool IdlLexer::accept(std::string_view text) {
+  if (!is(text)) return false;
+  advance();
+  return true;
+}
+
+void IdlLexer::expect(std::string_view text) {
+  if (!accept(text)) fail("'" + std::string(text) + "'");
+}
+
+std::string IdlLexer::name(const std::string& what) {
+  if (token_.kind != Token::Kind::kWord || std::ranges::count(kKeywords, token_.text) > 0) fail(what);
+  std::string name(token_.text);
+  advance();
+  return name;
+}
+
+std::string IdlLexer::scopedName(const std::string& what) {
+  std::string full = accept("::") ? "::" : "";
+  full += name(what);
+  while (accept("::")) {
+    full += "::" + name("a name");
+    if (full.size() > kMaxNameBytes)
+      fail("names of at most " + std::to_string(kMaxNameBytes) + " bytes", "a longer one");
+  }
+  return full;
+}
+
+void IdlLexer::fail(const std::string& expected) const {
+  fail(expected,
+       token_.kind == Token::Kind::kEnd ? "the end of the text" : "'" + std::string(token_.text.substr(0, 60)) + "'");
+}
+
+}  // namespace baton::schema

@@ -1,0 +1,58 @@
+/// IDL text as words, numbers, strings and signs.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace baton::schema {
+
+struct Token {
+  enum class Kind { kWord, kNumber, kString, kSign, kEnd };
+  Kind kind = Kind::kEnd;
+  std::string_view text{};  // of a string without its quotes
+  std::size_t line = 1;
+};
+
+/// "line 3: expected ';', found 'struct'", thrown as IdlError.
+[[noreturn]] void failAt(std::size_t line, const std::string& expected, const std::string& found);
+
+/// Cuts a text into tokens and hands them out one by one; white space and comments are skipped. Throws IdlError for
+/// what is not expected, and for what cannot be part of IDL.
+class IdlLexer {
+ public:
+  explicit IdlLexer(std::string_view text) : rest_(text) { advance(); }
+
+  /// The next token; kEnd at the end.
+  [[nodiscard]] const Token& token() const { return token_; }
+  void advance() { token_ = read(); }
+
+  /// Whether this word or sign comes next.
+  [[nodiscard]] bool is(std::string_view text) const {
+    return (token_.kind == Token::Kind::kWord || token_.kind == Token::Kind::kSign) && token_.text == text;
+  }
+  /// Takes it if it does.
+  bool accept(std::string_view text);
+  /// Takes it.
+  void expect(std::string_view text);
+  /// Takes a word that is not a keyword.
+  [[nodiscard]] std::string name(const std::string& what);
+  /// Takes "a::b" or "::a::b"; returned as written.
+  [[nodiscard]] std::string scopedName(const std::string& what);
+
+  [[noreturn]] void fail(const std::string& expected) const;
+  [[noreturn]] void fail(const std::string& expected, const std::string& found) const {
+    failAt(token_.line, expected, found);
+  }
+
+ private:
+  void skipBlanks();
+  [[nodiscard]] Token take(Token::Kind kind, std::size_t length);
+  [[nodiscard]] Token read();
+
+  std::string_view rest_;
+  std::size_t line_ = 1;
+  Token token_{};
+};
+
+}  // namespace baton::schema

@@ -1,0 +1,53 @@
+/// What names mean in an IDL text, and the constants among them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "schema/idl_lexer.hpp"
+#include "schema/type.hpp"
+
+namespace baton::schema {
+
+struct Constant {
+  const Type* type = nullptr;
+  std::optional<std::int64_t> value{};  // nothing for a string or a number with a fraction
+};
+
+using TypeNames = std::map<std::string, const Type*, std::less<>>;
+
+class IdlNames {
+ public:
+  IdlNames(IdlLexer& lexer, TypeNames& types) : lexer_(lexer), types_(types) {}
+
+  /// Everything declared until leave() belongs to the module. Returns what leave() takes.
+  [[nodiscard]] std::string enter(const std::string& module);
+  void leave(const std::string& outer) { scope_ = outer; }
+
+  /// A name that is to be declared here, with its modules. Throws IdlError when it has a meaning already.
+  [[nodiscard]] std::string claim(const std::string& name) const;
+  void addType(const std::string& full_name, const Type* type) { types_.emplace(full_name, type); }
+  /// @param name  taken from claim(), or further down.
+  void addConstant(const std::string& full_name, Constant constant);
+  [[nodiscard]] std::size_t size() const { return types_.size() + constants_.size(); }
+
+  /// Takes the name of a type that was declared before.
+  [[nodiscard]] const Type* type();
+  /// Takes a whole number, written out or a constant's name.
+  [[nodiscard]] std::int64_t integer(std::int64_t smallest, std::int64_t largest);
+  /// Takes a value of the type, written out or a constant's name.
+  [[nodiscard]] std::optional<std::int64_t> value(const Type& type);
+
+ private:
+  IdlLexer& lexer_;
+  TypeNames& types_;
+  std::map<std::string, Constant, std::less<>> constants_;
+  std::string scope_;  // "baton::msg::"
+};
+
+[[nodiscard]] constexpr bool isInteger(Kind kind) { return kind >= Kind::kInt8 && kind <= Kind::kUint64; }
+
+}  // namespace baton::schema

@@ -1,0 +1,324 @@
+#include "schema/idl_parser.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "schema/idl_lexer.hpp"
+#include "schema/idl_names.hpp"
+#include "schema/limits.hpp"
+
+namespace baton::schema {
+namespace {
+
+struct Primitive {
+  std::string_view words;
+  Kind kind;
+  std::uint64_t bytes;
+};
+constexpr std::array kPrimitives{
+    Primitive{"boolean", Kind::kBoolean, 1},
+    Primitive{"octet", Kind::kOctet, 1},
+    Primitive{"char", Kind::kChar, 1},
+    Primitive{"int8", Kind::kInt8, 1},
+    Primitive{"uint8", Kind::kUint8, 1},
+    Primitive{"int16", Kind::kInt16, 2},
+    Primitive{"short", Kind::kInt16, 2},
+    Primitive{"uint16", Kind::kUint16, 2},
+    Primitive{"unsigned short", Kind::kUint16, 2},
+    Primitive{"int32", Kind::kInt32, 4},
+    Primitive{"long", Kind::kInt32, 4},
+    Primitive{"uint32", Kind::kUint32, 4},
+    Primitive{"unsigned long", Kind::kUint32, 4},
+    Primitive{"int64", Kind::kInt64, 8},
+    Primitive{"long long", Kind::kInt64, 8},
+    Primitive{"uint64", Kind::kUint64, 8},
+    Primitive{"unsigned long long", Kind::kUint64, 8},
+    Primitive{"float", Kind::kFloat, 4},
+    Primitive{"double", Kind::kDouble, 8},
+    Primitive{"string", Kind::kString, 4},
+};
+
+// Annotations that change nothing in a payload, beside @unit and @key.
+constexpr std::array<std::string_view, 8> kSkipped{"final", "min", "max", "range", "default", "id", "topic", "nested"};
+
+std::string atMost(std::uint64_t limit, const std::string& what) {
+  return "at most " + std::to_string(limit) + " " + what;
+}
+
+}  // namespace
+
+class IdlParser {
+ public:
+  explicit IdlParser(std::string_view text) : lexer_(text) {
+    for (const Primitive& one : kPrimitives) {
+      primitives_[one.words] = &set_.types_.emplace_back(Type{.kind = one.kind, .least_bytes = one.bytes});
+    }
+  }
+
+  TypeSet parse() {
+    while (lexer_.token().kind != Token::Kind::kEnd) definition(0);
+    return std::move(set_);
+  }
+
+ private:
+  struct Annotations {
+    std::string unit;
+    bool is_key = false;
+  };
+
+  Annotations annotations() {
+    Annotations all;
+    while (lexer_.accept("@")) {
+      const std::string name = lexer_.token().kind == Token::Kind::kWord ? std::string(lexer_.token().text) : "";
+      if (name == "key") {
+        all.is_key = true;
+      } else if (name != "unit" && std::ranges::count(kSkipped, name) == 0) {
+        lexer_.fail("an annotation that changes nothing in a payload (final, key, unit, ...)");
+      }
+      lexer_.advance();
+      if (name == "unit") {
+        all.unit = unit();
+      } else if (lexer_.accept("(")) {
+        while (!lexer_.accept(")")) {
+          if (lexer_.token().kind == Token::Kind::kEnd || lexer_.is("(") || lexer_.is(";")) lexer_.fail("')'");
+          lexer_.advance();
+        }
+      }
+    }
+    return all;
+  }
+
+  std::string unit() {
+    lexer_.expect("(");
+    if (lexer_.token().kind != Token::Kind::kString) lexer_.fail("the unit as a string");
+    std::string text(lexer_.token().text);
+    lexer_.advance();
+    lexer_.expect(")");
+    return text;
+  }
+
+  const Type* add(Type type) {
+    if (set_.types_.size() >= kMaxDefinitions) lexer_.fail(atMost(kMaxDefinitions, "types"), "more");
+    if (type.depth > kMaxDepth) lexer_.fail(atMost(kMaxDepth, "types within each other"), "more");
+    if (type.least_bytes > kMaxLeastBytes) lexer_.fail(atMost(kMaxLeastBytes, "bytes for a value"), "a larger type");
+    return &set_.types_.emplace_back(std::move(type));
+  }
+
+  std::uint64_t bound() {
+    return static_cast<std::uint64_t>(names_.integer(1, std::numeric_limits<std::uint32_t>::max()));
+  }
+
+  // --- types by name
+
+  const Type* typeName() {
+    if (lexer_.accept("sequence")) return sequence();
+    const bool is_primitive =
+        std::ranges::any_of(kPrimitives, [&](const Primitive& one) { return lexer_.is(one.words); });
+    if (!is_primitive && !lexer_.is("unsigned")) return names_.type();
+    std::string words(lexer_.token().text);
+    lexer_.advance();
+    if (words == "unsigned") {
+      if (!lexer_.is("short") && !lexer_.is("long")) lexer_.fail("'short' or 'long'");
+      words += " " + std::string(lexer_.token().text);
+      lexer_.advance();
+    }
+    if (words.ends_with("long") && lexer_.accept("long")) words += " long";
+    if (words == "long" && lexer_.is("double")) lexer_.fail("a number that all encode alike", "'long double'");
+    const Type* type = primitives_.at(words);
+    if (type->kind != Kind::kString || !lexer_.accept("<")) return type;
+    Type bounded = *type;
+    bounded.bound = bound();
+    lexer_.expect(">");
+    return add(std::move(bounded));
+  }
+
+  const Type* sequence() {
+    // Recursion: as deep as sequences are nested in the text.
+    if (++nesting_ > kMaxDepth) lexer_.fail(atMost(kMaxDepth, "types within each other"), "more");
+    lexer_.expect("<");
+    const Type* element = typeName();
+    const std::uint64_t most = lexer_.accept(",") ? bound() : 0;
+    lexer_.expect(">");
+    --nesting_;
+    return add(
+        {.kind = Kind::kSequence, .element = element, .bound = most, .depth = element->depth + 1, .least_bytes = 4});
+  }
+
+  /// A name and the sizes of an array behind it, if there are any.
+  std::pair<std::string, const Type*> declarator(const Type* type) {
+    std::string name = lexer_.name("a name");
+    std::vector<std::uint64_t> sizes;
+    while (lexer_.accept("[")) {
+      if (sizes.size() == kMaxDepth) lexer_.fail(atMost(kMaxDepth, "dimensions"), "more");
+      sizes.push_back(bound());
+      lexer_.expect("]");
+    }
+    for (auto size = sizes.rbegin(); size != sizes.rend(); ++size) {
+      // No overflow: both factors are below 2^32.
+      type = add({.kind = Kind::kArray,
+                  .element = type,
+                  .bound = *size,
+                  .depth = type->depth + 1,
+                  .least_bytes = *size * type->least_bytes});
+    }
+    return {std::move(name), type};
+  }
+
+  // --- definitions
+
+  void addMember(Type& type, Member member) const {
+    if (type.members.size() == kMaxMembers) lexer_.fail(atMost(kMaxMembers, "members"), "more");
+    if (std::ranges::count(type.members, member.name, &Member::name) > 0) {
+      lexer_.fail("each member's name once", "'" + member.name + "' again");
+    }
+    type.depth = std::max(type.depth, member.type->depth + 1);
+    type.members.push_back(std::move(member));
+  }
+
+  const Type* finish(Type type) {
+    const std::string name = type.name;
+    const Type* added = add(std::move(type));
+    names_.addType(name, added);
+    return added;
+  }
+
+  void structure() {
+    Type type{.kind = Kind::kStruct, .name = names_.claim(lexer_.name("a struct's name"))};
+    lexer_.expect("{");
+    do {
+      const Annotations marks = annotations();
+      const Type* member_type = typeName();
+      do {
+        auto [name, declared] = declarator(member_type);
+        type.least_bytes += declared->least_bytes;
+        addMember(type, {std::move(name), declared, marks.unit, marks.is_key});
+      } while (lexer_.accept(","));
+      lexer_.expect(";");
+    } while (!lexer_.accept("}"));
+    finish(std::move(type));
+  }
+
+  void enumeration() {
+    Type type{.kind = Kind::kEnum, .name = names_.claim(lexer_.name("an enum's name")), .least_bytes = 4};
+    std::set<std::string> full_names{type.name};
+    lexer_.expect("{");
+    do {
+      if (type.enumerators.size() == kMaxEnumerators) lexer_.fail(atMost(kMaxEnumerators, "enumerators"), "more");
+      const std::string name = lexer_.name("an enumerator");
+      if (!full_names.insert(names_.claim(name)).second) lexer_.fail("a new name", "'" + name + "' again");
+      type.enumerators.push_back(name);
+    } while (lexer_.accept(","));
+    lexer_.expect("}");
+    const Type* added = finish(std::move(type));
+    std::int64_t value = 0;
+    for (const std::string& name : added->enumerators) {
+      // IDL has them beside the enum; some also say Enum::NAME.
+      names_.addConstant(names_.claim(name), {added, value});
+      names_.addConstant(added->name + "::" + name, {added, value++});
+    }
+  }
+
+  void labels(Type& type) {
+    const std::size_t member = type.members.size();
+    do {
+      if (lexer_.accept("default")) {
+        if (type.default_member != 0) lexer_.fail("one default", "another");
+        type.default_member = member;
+      } else {
+        lexer_.expect("case");
+        const std::int64_t value = names_.value(*type.members.front().type).value();
+        if (type.labels.size() == kMaxMembers) lexer_.fail(atMost(kMaxMembers, "labels"), "more");
+        if (std::ranges::count(type.labels, value, &Label::value) > 0) lexer_.fail("each label once", "one again");
+        type.labels.push_back({value, member});
+      }
+      lexer_.expect(":");
+    } while (lexer_.is("case") || lexer_.is("default"));
+  }
+
+  void unite() {
+    Type type{.kind = Kind::kUnion, .name = names_.claim(lexer_.name("a union's name"))};
+    lexer_.expect("switch");
+    lexer_.expect("(");
+    const Type* discriminator = typeName();
+    const Kind kind = discriminator->kind;
+    if (kind != Kind::kEnum && kind != Kind::kBoolean && !isInteger(kind)) {
+      lexer_.fail("a switch on an enum, a boolean or an integer", "another type");
+    }
+    lexer_.expect(")");
+    type.least_bytes = discriminator->least_bytes;
+    addMember(type, {std::string(kDiscriminator), discriminator});
+    lexer_.expect("{");
+    do {
+      labels(type);
+      const Annotations marks = annotations();
+      auto [name, declared] = declarator(typeName());
+      addMember(type, {std::move(name), declared, marks.unit, marks.is_key});
+      lexer_.expect(";");
+    } while (!lexer_.accept("}"));
+    finish(std::move(type));
+  }
+
+  void typeDefinition() {
+    const Type* type = typeName();
+    do {
+      const auto [name, declared] = declarator(type);
+      if (names_.size() >= kMaxDefinitions) lexer_.fail(atMost(kMaxDefinitions, "names"), "more");
+      names_.addType(names_.claim(name), declared);
+    } while (lexer_.accept(","));
+  }
+
+  void constant() {
+    const Type* type = typeName();
+    if (type->kind > Kind::kEnum || type->kind == Kind::kOctet || type->kind == Kind::kChar) {
+      lexer_.fail("a constant that is a number, a boolean, a string or of an enum", "one of another type");
+    }
+    const std::string name = names_.claim(lexer_.name("a constant's name"));
+    lexer_.expect("=");
+    names_.addConstant(name, {type, names_.value(*type)});
+  }
+
+  void module(unsigned depth) {
+    if (depth == kMaxDepth) lexer_.fail(atMost(kMaxDepth, "modules within each other"), "more");
+    const std::string outer = names_.enter(lexer_.name("a module's name"));
+    lexer_.expect("{");
+    while (!lexer_.accept("}")) definition(depth + 1);
+    names_.leave(outer);
+  }
+
+  void definition(unsigned depth) {
+    (void)annotations();
+    if (lexer_.accept("module")) {
+      module(depth);
+    } else if (lexer_.accept("struct")) {
+      structure();
+    } else if (lexer_.accept("union")) {
+      unite();
+    } else if (lexer_.accept("enum")) {
+      enumeration();
+    } else if (lexer_.accept("typedef")) {
+      typeDefinition();
+    } else if (lexer_.accept("const")) {
+      constant();
+    } else {
+      lexer_.fail("module, struct, union, enum, typedef or const");
+    }
+    lexer_.expect(";");
+  }
+
+  IdlLexer lexer_;
+  TypeSet set_;
+  IdlNames names_{lexer_, set_.names_};
+  std::map<std::string_view, const Type*> primitives_;
+  unsigned nesting_ = 0;
+};
+
+TypeSet parseIdl(std::string_view text) {
+  if (text.size() > kMaxTextBytes) failAt(1, atMost(kMaxTextBytes, "bytes"), std::to_string(text.size()));
+  return IdlParser(text).parse();
+}
+
+}  // namespace baton::schema

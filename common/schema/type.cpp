@@ -1,0 +1,24 @@
+#include "schema/type.hpp"
+
+#include <algorithm>
+
+namespace baton::schema {
+
+std::string_view enumeratorName(const Type& type, std::int64_t value) {
+  // They count from 0 upwards.
+  const auto index = static_cast<std::uint64_t>(value);
+  return index < type.enumerators.size() ? std::string_view(type.enumerators[index]) : std::string_view();
+}
+
+const Member* chosenMember(const Type& type, std::int64_t discriminator) {
+  const auto label = std::ranges::find_if(type.labels, [&](const Label& one) { return one.value == discriminator; });
+  const std::size_t index = label == type.labels.end() ? type.default_member : label->member;
+  return index == 0 ? nullptr : &type.members[index];
+}
+
+const Type* TypeSet::find(std::string_view name) const {
+  const auto found = names_.find(name);
+  return found == names_.end() ? nullptr : found->second;
+}
+
+}  // namespace baton::schema

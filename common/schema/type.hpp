@@ -1,0 +1,92 @@
+/// Types as a recording's own text declares them. Typedefs and constants are resolved: what is left is what decides how
+/// a payload is read, and what people want to see of it (names, units).
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace baton::schema {
+
+enum class Kind : std::uint8_t {
+  kBoolean,
+  kOctet,
+  kChar,
+  kInt8,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kInt64,
+  kUint64,
+  kFloat,
+  kDouble,
+  kString,
+  kEnum,
+  kStruct,
+  kUnion,
+  kSequence,
+  kArray
+};
+
+struct Type;
+
+struct Member {
+  std::string name{};
+  const Type* type = nullptr;
+  std::string unit{};  // of @unit("m"); empty for none
+  bool is_key = false;
+};
+
+/// Value of a union's discriminator that chooses one of its members.
+struct Label {
+  std::int64_t value = 0;
+  std::size_t member = 0;  // index in Type::members
+};
+
+/// The name of a union's first member, its discriminator; no name in IDL can be this.
+inline constexpr std::string_view kDiscriminator = "$discriminator";
+
+/// A struct and a union have at least one member, an array at least one element, so every value takes a byte or more.
+struct Type {
+  Kind kind = Kind::kBoolean;
+  std::string name{};                      // of a struct, union or enum, with its modules: "baton::msg::PlantState"
+  std::vector<Member> members{};           // struct: in their order; union: the discriminator, then the cases
+  std::vector<Label> labels{};             // union
+  std::size_t default_member = 0;          // union: chosen by all other values; 0 for none
+  std::vector<std::string> enumerators{};  // enum: [value]
+  const Type* element = nullptr;           // sequence and array; an array of arrays has the first index outside
+  std::uint64_t bound = 0;                 // array: elements; string and sequence: at most so many, 0 for no bound
+  unsigned depth = 0;                      // of types within it
+  std::uint64_t least_bytes = 0;           // no value takes fewer in a payload
+};
+
+/// The name of an enumerator; empty when no enumerator has the value.
+[[nodiscard]] std::string_view enumeratorName(const Type& type, std::int64_t value);
+
+/// The member a union has for a discriminator; null when it has none.
+[[nodiscard]] const Member* chosenMember(const Type& type, std::int64_t discriminator);
+
+/// All types of one text.
+class TypeSet {
+ public:
+  TypeSet() = default;
+  TypeSet(TypeSet&&) = default;
+  TypeSet& operator=(TypeSet&&) = default;
+
+  /// A struct, union, enum or typedef by its full name; null when there is none. Valid as long as the set.
+  [[nodiscard]] const Type* find(std::string_view name) const;
+  [[nodiscard]] const std::map<std::string, const Type*, std::less<>>& names() const { return names_; }
+
+ private:
+  friend class IdlParser;
+  std::deque<Type> types_;  // stay where they are
+  std::map<std::string, const Type*, std::less<>> names_;
+};
+
+}  // namespace baton::schema

@@ -1,0 +1,271 @@
+/// IDL texts to types, and what is refused with its line.
+#include "schema/idl_parser.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "msg/idl_text.hpp"
+#include "schema/error.hpp"
+#include "schema/limits.hpp"
+
+namespace baton::schema {
+namespace {
+
+/// The message of the error that parsing ends with; empty when it ends well.
+std::string errorOf(const std::string& text) {
+  try {
+    (void)parseIdl(text);
+    return "";
+  } catch (const IdlError& error) {
+    return error.what();
+  }
+}
+
+/// The type of the only member `m` of struct S.
+const Type& memberType(const TypeSet& types) { return *types.find("S")->members.front().type; }
+
+std::string inModules(unsigned count, const std::string& text) {
+  std::string begin, end;
+  for (unsigned i = 0; i < count; ++i) {
+    begin += "module m" + std::to_string(i) + " {";
+    end += "};";
+  }
+  return begin + text + end;
+}
+
+TEST(IdlParser, KnowsEveryTypeOfTheIdl) {
+  for (const msg::IdlText& one : msg::allIdlTexts()) {
+    const TypeSet types = parseIdl(one.text);
+    const Type* type = types.find(one.type_name);
+    ASSERT_NE(type, nullptr) << one.type_name;
+    EXPECT_EQ(type->kind, Kind::kStruct);
+    EXPECT_EQ(type->name, one.type_name);
+  }
+}
+
+TEST(IdlParser, KeepsNamesUnitsAndBounds) {
+  for (const msg::IdlText& one : msg::allIdlTexts()) {
+    if (one.type_name != "baton::msg::PlantState") continue;
+    const TypeSet types = parseIdl(one.text);
+    const Type& state = *types.find(one.type_name);
+    ASSERT_EQ(state.members.size(), 12U);
+    EXPECT_EQ(state.members[0].name, "step");
+    EXPECT_EQ(state.members[0].type->kind, Kind::kUint64);
+    EXPECT_EQ(state.members[0].unit, "");
+    EXPECT_EQ(state.members[1].unit, "ns");
+    EXPECT_EQ(state.members[2].type->kind, Kind::kSequence);
+    EXPECT_EQ(state.members[2].type->bound, 8U);
+    EXPECT_EQ(state.members[5].name, "tip_position");
+    EXPECT_EQ(state.members[5].type->kind, Kind::kArray);
+    EXPECT_EQ(state.members[5].type->bound, 3U);
+    EXPECT_EQ(state.members[5].type->element->kind, Kind::kDouble);
+    EXPECT_EQ(state.members[5].unit, "m");
+    EXPECT_EQ(state.members[6].type, types.find("baton::msg::Quaternion"));
+    EXPECT_EQ(state.members[9].type->kind, Kind::kString);
+    EXPECT_EQ(state.members[9].type->bound, 32U);
+  }
+}
+
+TEST(IdlParser, ReadsEveryPrimitive) {
+  const std::pair<const char*, Kind> primitives[]{
+      {"boolean", Kind::kBoolean},
+      {"octet", Kind::kOctet},
+      {"char", Kind::kChar},
+      {"int8", Kind::kInt8},
+      {"uint8", Kind::kUint8},
+      {"int16", Kind::kInt16},
+      {"short", Kind::kInt16},
+      {"uint16", Kind::kUint16},
+      {"unsigned short", Kind::kUint16},
+      {"int32", Kind::kInt32},
+      {"long", Kind::kInt32},
+      {"uint32", Kind::kUint32},
+      {"unsigned long", Kind::kUint32},
+      {"int64", Kind::kInt64},
+      {"long long", Kind::kInt64},
+      {"uint64", Kind::kUint64},
+      {"unsigned long long", Kind::kUint64},
+      {"float", Kind::kFloat},
+      {"double", Kind::kDouble},
+      {"string", Kind::kString},
+  };
+  for (const auto& [words, kind] : primitives) {
+    EXPECT_EQ(memberType(parseIdl("struct S { " + std::string(words) + " m; };")).kind, kind) << words;
+  }
+}
+
+TEST(IdlParser, ArraysOfManyDimensionsHaveTheFirstIndexOutside) {
+  const TypeSet types = parseIdl("const short N = 3; struct S { double m[N][4], n; };");
+  const Type& rows = memberType(types);
+  EXPECT_EQ(rows.kind, Kind::kArray);
+  EXPECT_EQ(rows.bound, 3U);
+  EXPECT_EQ(rows.element->bound, 4U);
+  EXPECT_EQ(rows.element->element->kind, Kind::kDouble);
+  EXPECT_EQ(rows.least_bytes, 96U);
+  EXPECT_EQ(types.find("S")->members[1].type->kind, Kind::kDouble);
+}
+
+TEST(IdlParser, TypedefsAreTheirTypes) {
+  const TypeSet types = parseIdl("typedef double Row[2]; typedef sequence<Row, 5> Rows; struct S { Rows m; };");
+  EXPECT_EQ(memberType(types).kind, Kind::kSequence);
+  EXPECT_EQ(memberType(types).bound, 5U);
+  EXPECT_EQ(memberType(types).element->bound, 2U);
+  EXPECT_EQ(types.find("Rows"), &memberType(types));
+}
+
+TEST(IdlParser, NamesAreLookedForFromTheInsideOut) {
+  const TypeSet types = parseIdl(
+      "struct T { long a; };"
+      "module m { struct T { double a; };"
+      "  module n { struct S { T inner; ::T outer; m::T named; }; }; };");
+  const Type& s = *types.find("m::n::S");
+  EXPECT_EQ(s.members[0].type, types.find("m::T"));
+  EXPECT_EQ(s.members[1].type, types.find("T"));
+  EXPECT_EQ(s.members[2].type, types.find("m::T"));
+}
+
+TEST(IdlParser, ReadsUnionsOnEnumsBooleansAndIntegers) {
+  const TypeSet types = parseIdl(
+      "enum Mode { MODE_IDLE, MODE_RUN };"
+      "@final union U switch (Mode) { case MODE_IDLE: long a; case Mode::MODE_RUN: default: @unit(\"m\") double b[2]; "
+      "};"
+      "union V switch (boolean) { case TRUE: long a; };"
+      "const long FIVE = 5;"
+      "union W switch (long) { case -1: case FIVE: long a; case 7: string b; };");
+  const Type& u = *types.find("U");
+  EXPECT_EQ(u.members[0].name, kDiscriminator);
+  EXPECT_EQ(chosenMember(u, 0)->name, "a");
+  EXPECT_EQ(chosenMember(u, 1)->name, "b");
+  EXPECT_EQ(chosenMember(u, 1)->unit, "m");
+  EXPECT_EQ(chosenMember(u, 9)->name, "b");
+  EXPECT_EQ(enumeratorName(*u.members[0].type, 1), "MODE_RUN");
+  EXPECT_EQ(enumeratorName(*u.members[0].type, 2), "");
+  EXPECT_EQ(enumeratorName(*u.members[0].type, -1), "");
+  EXPECT_EQ(chosenMember(*types.find("V"), 1)->name, "a");
+  EXPECT_EQ(chosenMember(*types.find("V"), 0), nullptr);
+  const Type& w = *types.find("W");
+  EXPECT_EQ(chosenMember(w, -1)->name, "a");
+  EXPECT_EQ(chosenMember(w, 5)->name, "a");
+  EXPECT_EQ(chosenMember(w, 7)->name, "b");
+}
+
+TEST(IdlParser, SkipsCommentsAndAnnotationsThatChangeNothing) {
+  const TypeSet types = parseIdl(
+      "// a comment\n/* another,\n over lines */\n@final @topic struct S {\n"
+      "  @key @id(3) long m; // behind\n  @range(min = -1.5, max = 2e+3) @default(7) @unit(\"m/s^2\") double n;\n};");
+  EXPECT_TRUE(types.find("S")->members[0].is_key);
+  EXPECT_EQ(types.find("S")->members[1].unit, "m/s^2");
+  const TypeSet constants = parseIdl("const float F = -1.5e-3; const string T = \"a\" \"b\"; const boolean B = TRUE;");
+  EXPECT_TRUE(constants.names().empty());
+}
+
+TEST(IdlParser, SaysTheLineWhatWasExpectedAndWhatWasFound) {
+  EXPECT_EQ(errorOf("struct S {\n  long a\n};"), "line 3: expected ';', found '}'");
+  EXPECT_EQ(errorOf("struct S { T a; };"), "line 1: expected a type that was declared before, found 'T'");
+  EXPECT_EQ(errorOf("struct S { long a;"), "line 1: expected a type, found the end of the text");
+  EXPECT_EQ(errorOf("#include \"a.idl\""), "line 1: expected a text without preprocessor lines, found '#'");
+  EXPECT_EQ(errorOf("\n/* never ends"), "line 2: expected the end of a comment, found the end of the text");
+  EXPECT_EQ(errorOf("struct S { double a[0x10]; };"),
+            "line 1: expected a whole number from 1 to 4294967295, found '0x10'");
+}
+
+TEST(IdlParser, RefusesWhatWouldChangeAPayload) {
+  for (const char* text :
+       {"@appendable struct S { long a; };", "@mutable struct S { long a; };", "struct S { @optional long a; };",
+        "@bit_bound(8) enum E { A };", "enum E { @value(3) A };", "struct A { long a; }; struct B : A { long b; };",
+        "struct S { wstring a; };", "struct S { long double a; };", "struct S { map<long, long> a; };",
+        "bitmask B { X };", "struct S;", "struct S { any a; };"}) {
+    EXPECT_NE(errorOf(text), "") << text;
+  }
+}
+
+TEST(IdlParser, RefusesWhatHasNoMeaning) {
+  for (const char* text : {"struct S {};",
+                           "struct S { S a; };",
+                           "struct S { long a; string a; };",
+                           "struct S { long a; }; struct S { long b; };",
+                           "struct S { long a[0]; };",
+                           "struct S { long a[-1]; };",
+                           "struct S { long a[2.5]; };",
+                           "struct S { long a[010]; };",
+                           "struct S { string<5000000000> a; };",
+                           "const string N = \"3\"; struct S { long a[N]; };",
+                           "const octet N = 3;",
+                           "const long N = 3.5;",
+                           "const short N = 40000;",
+                           "const long N = M;",
+                           "const boolean B = 1;",
+                           "enum E { A, A };",
+                           "enum E { E };",
+                           "enum E { A }; enum F { A };",
+                           "enum E { };",
+                           "union U switch (double) { case 1: long a; };",
+                           "union U switch (long) { case 1: long a; case 1: long b; };",
+                           "union U switch (long) { default: long a; default: long b; };",
+                           "union U switch (long) { };",
+                           "enum E { A }; enum F { B }; union U switch (E) { case B: long a; };",
+                           "union U switch (boolean) { case 1: long a; };",
+                           "struct S { long struct; };",
+                           "struct S { \"long\" a; };",
+                           "@\"key\" struct S { long a; };",
+                           "@unit struct S { long a; };",
+                           "@unit(3) struct S { long a; };",
+                           "@default(1 struct S { long a; };",
+                           "struct S { long a; } struct T { long b; };",
+                           "long a;",
+                           "};",
+                           "\x01",
+                           "\"a\\n\"",
+                           "struct S { sequence<> a; };",
+                           "struct S { sequence<long, 0> a; };",
+                           "struct S { unsigned double a; };"}) {
+    EXPECT_NE(errorOf(text), "") << text;
+  }
+}
+
+TEST(IdlParser, EveryCountHasItsLimit) {
+  const auto repeat = [](const std::string& text, std::size_t count) {
+    std::string all;
+    for (std::size_t i = 0; i < count; ++i) all += text;
+    return all;
+  };
+  const auto numbered = [](const std::string& before, const std::string& behind, std::size_t count) {
+    std::string all;
+    for (std::size_t i = 0; i < count; ++i) all += before + std::to_string(i) + behind;
+    return all;
+  };
+  EXPECT_NE(errorOf(std::string(kMaxTextBytes + 1, ' ')), "");
+  EXPECT_EQ(errorOf(std::string(kMaxTextBytes, ' ')), "");
+  EXPECT_EQ(errorOf(inModules(kMaxDepth, "struct S { long a; };")), "");
+  EXPECT_NE(errorOf(inModules(kMaxDepth + 1, "struct S { long a; };")), "");
+  EXPECT_NE(errorOf("module " + std::string(kMaxNameBytes, 'm') + " { struct S { long a; }; };"), "");
+  EXPECT_NE(errorOf("struct S { " + repeat("a::", kMaxNameBytes) + "b c; };"), "");
+  EXPECT_EQ(errorOf("struct S { " + numbered("long a", ";", kMaxMembers) + "};"), "");
+  EXPECT_NE(errorOf("struct S { " + numbered("long a", ";", kMaxMembers + 1) + "};"), "");
+  EXPECT_NE(errorOf("enum E { " + numbered("A", ",", kMaxEnumerators) + "B };"), "");
+  EXPECT_NE(errorOf(numbered("const long A", " = 1;", kMaxDefinitions + 1)), "");
+  EXPECT_NE(errorOf(numbered("typedef long A", ";", kMaxDefinitions + 1)), "");
+  EXPECT_NE(errorOf("union U switch (long) { " + numbered("case ", ":", kMaxMembers + 1) + " long a; };"), "");
+  // Types within each other, in every way there is.
+  EXPECT_NE(errorOf("struct S { long a" + repeat("[1]", kMaxDepth + 1) + "; };"), "");
+  EXPECT_NE(
+      errorOf("struct S { " + repeat("sequence<", kMaxDepth + 1) + "long" + repeat(">", kMaxDepth + 1) + " a; };"), "");
+  EXPECT_NE(errorOf("struct S { " + repeat("sequence<", 100'000)), "");
+  std::string chain = "struct S0 { long a; };";
+  for (unsigned i = 1; i <= kMaxDepth; ++i) {
+    chain += "struct S" + std::to_string(i) + " { S" + std::to_string(i - 1) + " a; };";
+  }
+  EXPECT_NE(errorOf(chain), "");
+  // What grows by a factor with each line.
+  EXPECT_NE(errorOf("struct S { double a[65536][65536]; };"), "");
+  std::string doubling = "struct S0 { double a; };";
+  for (unsigned i = 1; i < kMaxDepth; ++i) {
+    const std::string before = "S" + std::to_string(i - 1);
+    doubling += "struct S" + std::to_string(i) + " { " + before + " a; " + before + " b; };";
+  }
+  EXPECT_NE(errorOf(doubling), "");
+}
+
+}  // namespace
+}  // namespace baton::schema
