@@ -13,6 +13,9 @@ void addBagCommand(CLI::App& app, ExitCode& exit_code) {
   addBagMerge(*bag, exit_code);
   addBagCut(*bag, exit_code);
   addBagHash(*bag, exit_code);
+  addBagCat(*bag, exit_code);
+  addBagExport(*bag, exit_code);
+  addBagDiff(*bag, exit_code);
 }
 
 }  // namespace baton

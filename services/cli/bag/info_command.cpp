@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "bag/recorded_types.hpp"
 #include "bag/verdict.hpp"
 #include "base/error.hpp"
 #include "mcap/reader.hpp"
@@ -55,11 +56,6 @@ struct BagSummary {
     return static_cast<double>(plain_bytes) / static_cast<double>(std::max<std::uint64_t>(1, info.file_bytes));
   }
 };
-
-std::string valueOf(const mcap::StringMap& map, const std::string& key) {
-  const auto found = map.find(key);
-  return found == map.end() ? "" : found->second;
-}
 
 Verdict verdictOn(const BagSummary& bag) {
   if (!bag.damage.empty()) return Verdict::kDamaged;

@@ -13,5 +13,8 @@ void addBagVerify(CLI::App& bag, ExitCode& exit_code);
 void addBagRecover(CLI::App& bag, ExitCode& exit_code);
 void addBagMerge(CLI::App& bag, ExitCode& exit_code);
 void addBagCut(CLI::App& bag, ExitCode& exit_code);
+void addBagCat(CLI::App& bag, ExitCode& exit_code);
+void addBagExport(CLI::App& bag, ExitCode& exit_code);
+void addBagDiff(CLI::App& bag, ExitCode& exit_code);
 
 }  // namespace baton

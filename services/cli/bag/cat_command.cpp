@@ -1,0 +1,72 @@
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "bag/message_text.hpp"
+#include "bag/recorded_types.hpp"
+#include "bag/selection.hpp"
+#include "bag/subcommands.hpp"
+#include "base/error.hpp"
+
+namespace baton {
+namespace {
+
+struct CatRequest {
+  Selection selection;
+  std::uint64_t limit = 0;  // 0: none
+  bool raw = false;
+};
+
+/// Whether the text went out; false when whoever reads has had enough. Throws UnavailableError for any other reason.
+bool isTaken(bool went_out) {
+  if (went_out || errno == EPIPE) return went_out;
+  throw UnavailableError(std::string("standard output cannot be written: ") + std::strerror(errno));
+}
+
+ExitCode cat(const CatRequest& request) {
+  SelectedMessages messages(request.selection);
+  RecordedTypes types([&](const std::string& problem) { messages.complain(problem); });
+  std::string line;
+  std::uint64_t printed = 0;
+  // On a terminal the lines themselves show how it goes.
+  messages.forEach(isatty(STDOUT_FILENO) != 0 ? "" : "printing", [&](const mcap::MessageView& message) {
+    line.clear();
+    const std::string problem = appendJsonLine(line, message, request.raw ? nullptr : types.typeOf(message));
+    if (!problem.empty()) {
+      messages.complain("topic " + message.channel->topic + ", message " + std::to_string(message.sequence) +
+                        " is none of its type: " + problem);
+    }
+    line += '\n';
+    return isTaken(std::fwrite(line.data(), 1, line.size(), stdout) == line.size()) && ++printed != request.limit;
+  });
+  (void)isTaken(std::fflush(stdout) == 0);
+  return messages.exitCode();
+}
+
+}  // namespace
+
+void addBagCat(CLI::App& bag, ExitCode& exit_code) {
+  const auto request = std::make_shared<CatRequest>();
+  CLI::App* command = bag.add_subcommand("cat", "the messages, decoded, one JSON object a line");
+  command->footer(
+      "Messages are decoded with the IDL text that the recording carries; those of a topic without one are printed as\n"
+      "their bytes in hex, \"data\", beside the name of their type. Numbers read back as exactly what was recorded. "
+      "64-bit\n"
+      "integers are JSON integers with all their digits: read them with a reader that keeps more than 53 bits (Python "
+      "and\n"
+      "jq 1.7 do, JavaScript's JSON.parse does not). NaN, Infinity and -Infinity are strings, enums are their names,\n"
+      "octets in a sequence or an array are hex.\n"
+      "Exit codes: 0 all was printed, 1 some of it is cut, damaged or none of its type and the rest was printed,\n"
+      "2 wrong input or not a recording, 3 cannot be opened or printed.");
+  addTopicSelection(*command, request->selection);
+  addTimeSelection(*command, request->selection);
+  command->add_option("--limit", request->limit, "end after so many messages")->check(CLI::PositiveNumber);
+  command->add_flag("--raw", request->raw, "bytes in hex, whatever the topic");
+  command->callback([request, &exit_code] { exit_code = cat(*request); });
+}
+
+}  // namespace baton

@@ -1,0 +1,129 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bag/recording_diff.hpp"
+#include "bag/subcommands.hpp"
+#include "progress_line.hpp"
+#include "runtime/json.hpp"
+
+namespace baton {
+namespace {
+
+std::string nameOf(const StreamKey& key) { return key.second.empty() ? key.first : key.first + " of " + key.second; }
+
+std::string textOf(const Position& at) {
+  std::string text = at.step ? "step " + std::to_string(*at.step) : "message " + std::to_string(at.index + 1);
+  if (at.step && at.index > 0) text += " (message " + std::to_string(at.index + 1) + " of it)";
+  if (at.take > 0) text += " of take " + std::to_string(at.take + 1);
+  return text;
+}
+
+std::string textOf(const FirstDifference& first) {
+  const FieldDifference& what = first.what;
+  return textOf(first.at) + (what.field.empty() ? "" : ", " + what.field) + ": " + what.a + " | " + what.b;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+void printText(const DiffRequest& request, const RecordingDiff& diff) {
+  std::size_t topic_width = 5, service_width = 7;
+  for (const auto& [key, stream] : diff.streams) {
+    topic_width = std::max(topic_width, key.first.size());
+    service_width = std::max(service_width, key.second.size());
+  }
+  const auto first = diff.firstDifferent();
+  fmt::print("{}: A {}, B {}\n", diff.isSame() ? "same" : "different", request.a, request.b);
+  if (first) {
+    fmt::print("first       {}, {}\n", nameOf(*first), textOf(*diff.streams.at(*first).first));
+  }
+  if (!diff.left_out.empty()) fmt::print("left out    {}\n", joined(diff.left_out));
+  fmt::print("\n{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  first difference, A | B\n", "topic", topic_width, "service",
+             service_width, "compared", "different", "only in A", "only in B");
+  for (const auto& [key, stream] : diff.streams) {
+    fmt::print("{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  {}\n", key.first, topic_width, key.second, service_width,
+               stream.compared, stream.different, stream.only_a, stream.only_b,
+               stream.first ? textOf(*stream.first) : "");
+  }
+}
+
+nlohmann::ordered_json toJson(const DiffRequest& request, const RecordingDiff& diff) {
+  nlohmann::ordered_json streams = nlohmann::ordered_json::array();
+  for (const auto& [key, stream] : diff.streams) {
+    nlohmann::ordered_json row{{"topic", key.first},
+                               {"service", key.second},
+                               {"compared", stream.compared},
+                               {"different", stream.different},
+                               {"only_a", stream.only_a},
+                               {"only_b", stream.only_b},
+                               {"first", nullptr}};
+    if (stream.first) {
+      const Position& at = stream.first->at;
+      row["first"] = {{"take", at.take},           {"step", nullptr},
+                      {"index", at.index},         {"field", stream.first->what.field},
+                      {"a", stream.first->what.a}, {"b", stream.first->what.b}};
+      if (at.step) row["first"]["step"] = *at.step;
+    }
+    streams.push_back(row);
+  }
+  nlohmann::ordered_json json{
+      {"a", request.a},    {"b", request.b}, {"same", diff.isSame()}, {"first", nullptr}, {"left_out", diff.left_out},
+      {"streams", streams}};
+  if (const auto first = diff.firstDifferent()) json["first"] = {{"topic", first->first}, {"service", first->second}};
+  return json;
+}
+
+ExitCode diff(const DiffRequest& request, bool json) {
+  RecordingDiff found;
+  {
+    ProgressLine line;
+    found = diffRecordings(request, [&](double part) { line.show("comparing " + progressBar(part)); });
+  }
+  for (const std::string& warning : found.warnings) std::fprintf(stderr, "baton: warning: %s\n", warning.c_str());
+  if (json) {
+    std::puts(toText(toJson(request, found)).c_str());
+  } else {
+    printText(request, found);
+  }
+  return found.isSame() ? ExitCode::kOk : ExitCode::kFailed;
+}
+
+}  // namespace
+
+void addBagDiff(CLI::App& bag, ExitCode& exit_code) {
+  const auto request = std::make_shared<DiffRequest>();
+  const auto json = std::make_shared<bool>(false);
+  CLI::App* command = bag.add_subcommand("diff", "whether two recordings are of the same, sample by sample");
+  command->footer(
+      "Samples are paired by topic, service and step; by their order where messages have no step. Unless --topics "
+      "names\n"
+      "others, the topics of the control loop are compared: plant_state, contact, reference, joint_command and\n"
+      "shadow_command. Two runs of a scenario in lockstep are the same in these, while status, requests and events "
+      "tell\n"
+      "of processes and clocks. In recordings without any of them, all but *_status are compared.\n"
+      "Without --tolerance and --ignore bytes are compared, with them values; with --tolerance members called *_hash "
+      "are\n"
+      "left out. A field is named without indices, as position or reference.position, and stands for all within it.\n"
+      "Holds a chunk of each file and the samples that wait for their counterpart.\n"
+      "Exit codes: 0 the same, 1 different, 2 wrong input or not a recording, 3 cannot be opened.");
+  command->add_option("a", request->a, "recording (MCAP)")->required();
+  command->add_option("b", request->b, "another one")->required();
+  command->add_option("--topics", request->topics, "only these topics: a,b,c")->delimiter(',')->allow_extra_args(false);
+  command->add_option("--ignore", request->ignored, "topics, topic.field or field, not to compare")->delimiter(',');
+  command
+      ->add_option("--tolerance", request->tolerances,
+                   "how far numbers may be apart, in their unit: everywhere, or as field=1e-9, topic.field=1e-9")
+      ->delimiter(',');
+  command->add_flag("--json", *json, "as a JSON object");
+  command->callback([request, json, &exit_code] { exit_code = diff(*request, *json); });
+}
+
+}  // namespace baton

@@ -1,0 +1,52 @@
+#include "bag/recorded_types.hpp"
+
+#include <string_view>
+
+#include "base/error.hpp"
+#include "schema/error.hpp"
+#include "schema/idl_parser.hpp"
+
+namespace baton {
+
+std::string valueOf(const mcap::StringMap& map, const std::string& key) {
+  const auto found = map.find(key);
+  return found == map.end() ? "" : found->second;
+}
+
+std::string typeNameOf(const mcap::Channel& channel, const mcap::Schema* schema) {
+  return schema != nullptr ? schema->name : valueOf(channel.metadata, "type");
+}
+
+std::string serviceOf(const mcap::Channel& channel) { return valueOf(channel.metadata, "service"); }
+
+const schema::Type* RecordedTypes::typeOf(const mcap::Channel& channel, const mcap::Schema* schema) {
+  const auto [known, is_new] = types_.try_emplace(channel.id, nullptr);
+  if (!is_new || schema == nullptr) return known->second;
+  try {
+    known->second = read(channel, *schema);
+  } catch (const UsageError& error) {
+    complain_("topic " + channel.topic + " stays bytes: " + error.what());
+  }
+  return known->second;
+}
+
+const schema::Type* RecordedTypes::read(const mcap::Channel& channel, const mcap::Schema& schema) {
+  if (channel.message_encoding != "cdr" || schema.encoding != "omgidl") {
+    throw UsageError("expected messages in cdr with a schema in omgidl, found " + channel.message_encoding + " with " +
+                     schema.encoding);
+  }
+  auto set = sets_.find(schema.id);
+  if (set == sets_.end()) {
+    try {
+      const std::string_view text(reinterpret_cast<const char*>(schema.data.data()), schema.data.size());
+      set = sets_.emplace(schema.id, schema::parseIdl(text)).first;
+    } catch (const schema::IdlError& error) {
+      throw UsageError("the text of schema " + schema.name + ", " + error.what());
+    }
+  }
+  const schema::Type* type = set->second.find(schema.name);
+  if (type == nullptr) throw UsageError("expected the type " + schema.name + " in its schema's text, found it nowhere");
+  return type;
+}
+
+}  // namespace baton

@@ -1,0 +1,88 @@
+#include "bag/selection.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <set>
+
+#include "control/nearest_name.hpp"
+
+namespace baton {
+namespace {
+
+constexpr std::uint64_t kShowEvery = 4096;
+
+std::uint64_t logTimeAt(std::uint64_t start_ns, double seconds) {
+  return start_ns + static_cast<std::uint64_t>(std::min(seconds * 1e9, 9e18));
+}
+
+}  // namespace
+
+void addTopicSelection(CLI::App& command, Selection& selection) {
+  command.add_option("file", selection.file, "recording (MCAP)")->required();
+  command.add_option("--topics", selection.topics, "only these topics: a,b,c")->delimiter(',')->allow_extra_args(false);
+}
+
+void addTimeSelection(CLI::App& command, Selection& selection) {
+  command.add_option("--from", selection.from_s, "start here, in s of log time from the recording's first message")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--to", selection.to_s, "end here, likewise")->check(CLI::NonNegativeNumber);
+}
+
+std::vector<std::string> topicNames(const mcap::Reader& reader) {
+  std::set<std::string> names;
+  for (const auto& [id, channel] : reader.channels()) names.insert(channel.topic);
+  return {names.begin(), names.end()};
+}
+
+SelectedMessages::SelectedMessages(const Selection& selection)
+    : file_(selection.file),
+      reader_(selection.file, {.on_damage = [this](const mcap::Damage& damage) {
+                if (!damage_.try_emplace(damage.offset, damage.reason).second) return;
+                complain(std::to_string(damage.length) + " bytes at byte " + std::to_string(damage.offset) +
+                         " cannot be read and are left out: " + damage.reason);
+              }}) {
+  if (!reader_.info().is_complete) complain("it was cut: " + reader_.info().problem);
+  const std::vector<std::string> known = topicNames(reader_);
+  for (const std::string& topic : selection.topics) {
+    if (!std::ranges::binary_search(known, topic)) throw UsageError(unknownName("topic", topic, known));
+  }
+  filter_.topics = selection.topics;
+  const std::uint64_t start_ns = reader_.statistics().start_time_ns;
+  if (selection.from_s) filter_.start_time_ns = logTimeAt(start_ns, *selection.from_s);
+  if (selection.to_s) filter_.end_time_ns = logTimeAt(start_ns, *selection.to_s);
+  if (filter_.end_time_ns < filter_.start_time_ns) throw UsageError("--to: expected a time that is not before --from");
+}
+
+void SelectedMessages::complain(const std::string& problem) {
+  progress_.show("");
+  std::fprintf(stderr, "baton: warning: %s: %s\n", file_.c_str(), problem.c_str());
+  has_problem_ = true;
+}
+
+/// As the file counts them; those outside of the chosen time too.
+std::uint64_t SelectedMessages::expectedMessages() const {
+  if (filter_.topics.empty()) return reader_.statistics().message_count;
+  std::uint64_t sum = 0;
+  for (const auto& [id, count] : reader_.statistics().channel_message_counts) {
+    const auto channel = reader_.channels().find(id);
+    if (channel != reader_.channels().end() && std::ranges::count(filter_.topics, channel->second.topic) > 0) {
+      sum += count;
+    }
+  }
+  return sum;
+}
+
+void SelectedMessages::forEach(const std::string& doing, const std::function<bool(const mcap::MessageView&)>& use) {
+  const auto expected = static_cast<double>(std::max<std::uint64_t>(1, expectedMessages()));
+  mcap::MessageCursor messages = reader_.messages(filter_);
+  std::uint64_t done = 0;
+  for (mcap::MessageView message; messages.next(message) && use(message);) {
+    if (++done % kShowEvery != 0 || doing.empty()) continue;
+    const double part = std::min(1.0, static_cast<double>(done) / expected);
+    progress_.show(doing + " " + progressBar(part) + " " + std::to_string(done) + " messages");
+  }
+  progress_.show("");
+}
+
+}  // namespace baton

@@ -1,0 +1,59 @@
+/// What `bag cat` and `bag export` take out of a recording: some topics, some of its time.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "mcap/reader.hpp"
+#include "progress_line.hpp"
+
+namespace baton {
+
+struct Selection {
+  std::string file;
+  std::vector<std::string> topics;  // all when empty
+  std::optional<double> from_s;     // of log time, from the recording's first message
+  std::optional<double> to_s;
+};
+
+/// The file and --topics.
+void addTopicSelection(CLI::App& command, Selection& selection);
+/// --from and --to.
+void addTimeSelection(CLI::App& command, Selection& selection);
+
+/// The messages that were chosen. What cannot be read is left out and told on standard error.
+class SelectedMessages {
+ public:
+  /// Throws what opening a recording throws, and UsageError for a topic it does not have or times in the wrong order.
+  explicit SelectedMessages(const Selection& selection);
+
+  /// In order of log time. `use` returns false to end it early. Shows on the terminal how far it is, after `doing`,
+  /// which is empty to show nothing.
+  void forEach(const std::string& doing, const std::function<bool(const mcap::MessageView&)>& use);
+
+  /// Says something on standard error that makes the exit code kFailed.
+  void complain(const std::string& problem);
+  /// kOk when all that was chosen could be read and nobody complained.
+  [[nodiscard]] ExitCode exitCode() const { return has_problem_ ? ExitCode::kFailed : ExitCode::kOk; }
+  [[nodiscard]] const mcap::Reader& reader() const { return reader_; }
+
+ private:
+  [[nodiscard]] std::uint64_t expectedMessages() const;
+
+  std::map<std::uint64_t, std::string> damage_;  // by place: each pass comes across the same
+  bool has_problem_ = false;
+  std::string file_;
+  mcap::Reader reader_;
+  mcap::MessageFilter filter_;
+  ProgressLine progress_;
+};
+
+/// All topics of a recording, sorted.
+[[nodiscard]] std::vector<std::string> topicNames(const mcap::Reader& reader);
+
+}  // namespace baton
