@@ -63,6 +63,8 @@ inline constexpr Topic<msg::ServiceManifest>  kServiceManifest {"service_manifes
 inline constexpr Topic<msg::Event>            kEvent           {"event",             "baton::msg::Event",            Profile::kEvent};
 inline constexpr Topic<msg::RecorderStatus>   kRecorderStatus  {"recorder_status",   "baton::msg::RecorderStatus",   Profile::kStatus};
 inline constexpr Topic<msg::ReplayStatus>     kReplayStatus    {"replay_status",     "baton::msg::ReplayStatus",     Profile::kStatus};
+inline constexpr Topic<msg::ReplayRequest>    kReplayRequest   {"replay_request",    "baton::msg::ReplayRequest",    Profile::kRequest};
+inline constexpr Topic<msg::ReplayReply>      kReplayReply     {"replay_reply",      "baton::msg::ReplayReply",      Profile::kRequest};
 // clang-format on
 }  // namespace topics
 

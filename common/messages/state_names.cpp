@@ -42,4 +42,14 @@ const char* toString(msg::RecorderState state) {
   return "?";
 }
 
+const char* toString(msg::ReplayState state) {
+  switch (state) {
+    case msg::REPLAY_WAITING: return "waiting";
+    case msg::REPLAY_PLAYING: return "playing";
+    case msg::REPLAY_PAUSED: return "paused";
+    case msg::REPLAY_FINISHED: return "finished";
+  }
+  return "?";
+}
+
 }  // namespace baton

@@ -12,5 +12,6 @@ namespace baton {
 [[nodiscard]] const char* toString(msg::ControllerState state);
 [[nodiscard]] const char* toString(msg::ServiceState state);
 [[nodiscard]] const char* toString(msg::RecorderState state);
+[[nodiscard]] const char* toString(msg::ReplayState state);
 
 }  // namespace baton

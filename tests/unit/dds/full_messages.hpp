@@ -25,7 +25,8 @@ using AllTypes =
                    msg::SwapReport, msg::BatonMember, msg::BatonStatus, msg::ControllerStatus, msg::Parameter,
                    msg::ParameterStatus, msg::ParameterValue, msg::ParameterRequest, msg::ParameterReply, msg::Decision,
                    msg::LaunchRequest, msg::LaunchReply, msg::ServiceStatus, msg::Event, msg::StreamManifest,
-                   msg::ServiceManifest, msg::RecorderStatus, msg::ReplayStatus>;
+                   msg::ServiceManifest, msg::RecorderStatus, msg::ReplayStatus,
+                   msg::ReplayRequest, msg::ReplayReply>;
 
 inline constexpr std::uint64_t kId = 0xFEDC'BA98'7654'3210;
 inline constexpr std::int64_t kTime = -0x0123'4567'89AB'CDEF;
@@ -382,12 +383,34 @@ inline void fill(msg::ReplayStatus& m) {
   m.state(msg::REPLAY_FINISHED);
   m.messages(kId);
   m.total(kId);
+  m.pass(2);
+  m.passes(3);
+  m.rate(0.5);
   m.position_ns(kTime);
   m.duration_ns(kTime);
   m.lateness_p50_us(1.5);
   m.lateness_p99_us(2.5);
   m.lateness_max_us(3.5);
+  m.overdue(kId);
+  m.waiting_for(std::string(200, 'w'));
   m.path(std::string(400, 'p'));
+}
+
+inline void fill(msg::ReplayRequest& m) {
+  m.request_id(kId);
+  m.action(msg::REPLAY_STOP);
+  m.messages(kId);
+  m.topic(std::string(200, 't'));
+  m.position_ns(kTime);
+  m.rate(0.5);
+}
+
+inline void fill(msg::ReplayReply& m) {
+  m.request_id(kId);
+  m.accepted(true);
+  m.messages(kId);
+  m.position_ns(kTime);
+  m.reason(std::string(200, 'r'));
 }
 
 template <class T>

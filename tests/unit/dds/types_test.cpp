@@ -112,7 +112,7 @@ std::vector<Row> topicTable() {
        topics::kSwapOutcome, topics::kSwapReport, topics::kBatonStatus, topics::kControllerStatus,
        topics::kParameterStatus, topics::kParameterRequest, topics::kParameterReply, topics::kDecision,
        topics::kLaunchRequest, topics::kLaunchReply, topics::kServiceStatus, topics::kServiceManifest, topics::kEvent,
-       topics::kRecorderStatus, topics::kReplayStatus);
+       topics::kRecorderStatus, topics::kReplayStatus, topics::kReplayRequest, topics::kReplayReply);
   return rows;
 }
 
