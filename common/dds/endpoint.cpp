@@ -49,6 +49,7 @@ class Matches {
 template <class Qos>
 void applyOptions(const EndpointOptions& options, Qos& qos) {
   applyProfile(options.profile, qos);
+  if (options.best_effort) qos.reliability().kind = BEST_EFFORT_RELIABILITY_QOS;
   qos.ownership().kind = options.exclusive_ownership ? EXCLUSIVE_OWNERSHIP_QOS : SHARED_OWNERSHIP_QOS;
   if (options.keyed) {
     // As many instances as come; the default of 10 would fail silently beyond that.
@@ -56,6 +57,24 @@ void applyOptions(const EndpointOptions& options, Qos& qos) {
     qos.resource_limits().max_samples = 0;
     qos.resource_limits().max_samples_per_instance = qos.history().depth;
   }
+}
+
+eprosima::fastrtps::Duration_t durationOf(std::int64_t duration_ns) {
+  if (duration_ns <= 0) return eprosima::fastrtps::c_TimeInfinite;
+  return {static_cast<std::int32_t>(duration_ns / 1'000'000'000),
+          static_cast<std::uint32_t>(duration_ns % 1'000'000'000)};
+}
+
+void applyPromises(const EndpointOptions& options, DataWriterQos& qos) {
+  qos.deadline().period = durationOf(options.deadline_ns);
+  qos.ownership_strength().value = options.ownership_strength;
+  switch (options.liveliness.kind) {
+    case Liveliness::Kind::kAutomatic: qos.liveliness().kind = AUTOMATIC_LIVELINESS_QOS; break;
+    case Liveliness::Kind::kManualByParticipant: qos.liveliness().kind = MANUAL_BY_PARTICIPANT_LIVELINESS_QOS; break;
+    case Liveliness::Kind::kManualByTopic: qos.liveliness().kind = MANUAL_BY_TOPIC_LIVELINESS_QOS; break;
+  }
+  qos.liveliness().lease_duration = durationOf(options.liveliness.lease_ns);
+  qos.liveliness().announcement_period = durationOf(options.liveliness.lease_ns / 2);  // must be shorter than the lease
 }
 }  // namespace
 
@@ -66,6 +85,7 @@ struct RawWriter::Impl final : DataWriterListener {
     Topic* topic = shared.topic(options.topic, options.type, options.max_payload, options.keyed);
     DataWriterQos qos = shared.publisher->get_default_datawriter_qos();
     applyOptions(options, qos);
+    applyPromises(options, qos);
     writer = shared.publisher->create_datawriter(topic, qos, this, StatusMask::publication_matched());
     if (writer == nullptr) refuse("writer", options);
   }
@@ -127,7 +147,6 @@ struct RawReader::Impl final : DataReaderListener {
     DataReaderQos qos = shared.subscriber->get_default_datareader_qos();
     applyOptions(options, qos);
     qos.expects_inline_qos(options.keyed);
-    if (options.best_effort) qos.reliability().kind = BEST_EFFORT_RELIABILITY_QOS;
     reader = shared.subscriber->create_datareader(
         topic, qos, this,
         StatusMask::data_available() << StatusMask::subscription_matched() << StatusMask::sample_lost());

@@ -11,6 +11,14 @@
 
 namespace baton::dds {
 
+/// How a writer shows that it lives, and how often at least.
+struct Liveliness {
+  enum class Kind { kAutomatic, kManualByParticipant, kManualByTopic };
+  Kind kind = Kind::kAutomatic;
+  std::int64_t lease_ns = 0;  // 0: for ever
+  bool operator==(const Liveliness&) const = default;
+};
+
 struct EndpointOptions {
   std::string topic;
   std::string type;  // "baton::msg::PlantState"
@@ -18,7 +26,11 @@ struct EndpointOptions {
   std::uint32_t max_payload = 1024;  // bytes; memory is set aside for this much, larger samples still pass
   bool keyed = false;                // must equal the other side's
   bool exclusive_ownership = false;  // likewise
-  bool best_effort = false;          // reader: also match writers that do not resend
+  bool best_effort = false;          // writer: does not resend; reader: also match writers that do not
+  // What readers may demand of a writer beyond the profile; readers of Baton demand nothing of it.
+  std::int64_t deadline_ns = 0;          // writer: promises a sample at least this often; 0: promises none
+  Liveliness liveliness{};               // writer
+  std::uint32_t ownership_strength = 0;  // writer, exclusive
   bool operator==(const EndpointOptions&) const = default;
 };
 

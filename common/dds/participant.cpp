@@ -74,6 +74,21 @@ bool isLost(std::uint64_t one_in) {
   return splitmix(++count * kSplitmixStep) % one_in == 0;
 }
 
+/// "name: value" lines for what a writer promises beyond the usual; nothing for what it does not.
+std::string promisesText(const WriterQos& qos) {
+  const auto line = [](const char* name, const eprosima::fastrtps::Duration_t& duration) {
+    return duration == eprosima::fastrtps::c_TimeInfinite ? "" : name + std::to_string(duration.to_ns()) + "\n";
+  };
+  std::string text = line("deadline_ns: ", qos.m_deadline.period);
+  if (qos.m_liveliness.kind == MANUAL_BY_PARTICIPANT_LIVELINESS_QOS) text += "liveliness: manual_by_participant\n";
+  if (qos.m_liveliness.kind == MANUAL_BY_TOPIC_LIVELINESS_QOS) text += "liveliness: manual_by_topic\n";
+  text += line("lease_ns: ", qos.m_liveliness.lease_duration);
+  if (qos.m_ownership.kind == EXCLUSIVE_OWNERSHIP_QOS) {
+    text += "ownership_strength: " + std::to_string(qos.m_ownershipStrength.value) + "\n";
+  }
+  return text;
+}
+
 GuidPrefix toPrefix(const rtps::GUID_t& guid) { return prefixOf(toGuid(guid)); }
 
 DomainParticipantQos participantQos(const ParticipantOptions& options, const Peer& self) {
@@ -141,6 +156,7 @@ Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_
   SubscriberQos subscriber_qos = participant->get_default_subscriber_qos();
   publisher_qos.partition().push_back(options.partition.c_str());
   subscriber_qos.partition().push_back(options.partition.c_str());
+  for (const std::string& other : options.other_partitions) publisher_qos.partition().push_back(other.c_str());
   publisher = participant->create_publisher(publisher_qos);
   subscriber = participant->create_subscriber(subscriber_qos);
   if (publisher == nullptr || subscriber == nullptr) refuse("a publisher and a subscriber");
@@ -192,7 +208,7 @@ void Participant::Impl::on_publisher_discovery(DomainParticipant*, rtps::WriterD
   writer.qos_text = std::string("reliability: ") + (writer.reliable ? "reliable" : "best_effort") +
                     "\ndurability: " + (writer.transient_local ? "transient_local" : "volatile") +
                     "\nownership: " + (writer.exclusive_ownership ? "exclusive" : "shared") +
-                    "\nkeyed: " + (writer.keyed ? "true" : "false") + "\n";
+                    "\nkeyed: " + (writer.keyed ? "true" : "false") + "\n" + promisesText(qos);
   {
     const std::lock_guard lock(mutex);
     writers[writer.guid] = writer;

@@ -15,9 +15,10 @@ namespace baton::dds {
 struct ParticipantOptions {
   int domain = 0;         // 0 to 232
   std::string partition;  // "cell/run": endpoints in other partitions are never matched; may be a pattern for observers
-  std::string cell;       // the cell this process belongs to, empty for observers of any
-  std::string run;        // the run within the cell; what is left over from another run is told apart by this
-  std::string service;    // name of the service, unique in the run
+  std::vector<std::string> other_partitions{};  // writers are heard in these as well; "": where no partition is set
+  std::string cell;                             // the cell this process belongs to, empty for observers of any
+  std::string run;      // the run within the cell; what is left over from another run is told apart by this
+  std::string service;  // name of the service, unique in the run
   Transport transport = Transport::kUdp;
 };
 

@@ -151,6 +151,53 @@ TEST(ParticipantTest, WatchWritersFindsThoseThereAreAndThoseToCome) {
   EXPECT_EQ(watch.found().size(), 2u);
 }
 
+TEST(ParticipantTest, TheTextOfAWritersQosSaysWhatItPromises) {
+  Signal signal;
+  Watch watch(signal, "cell");
+  Participant plant(memberOptions("plant", "cell")), recorder(memberOptions("recorder", "cell"));
+  watch.listenTo(recorder);
+  RawWriter modest(plant, {.topic = "modest", .type = "baton::test::A"});
+  RawWriter bold(plant, {.topic = "bold",
+                         .type = "baton::test::A",
+                         .exclusive_ownership = true,
+                         .best_effort = true,
+                         .deadline_ns = 20'000'000,
+                         .liveliness = {.kind = Liveliness::Kind::kManualByTopic, .lease_ns = 3'000'000'000},
+                         .ownership_strength = 7});
+  ASSERT_TRUE(
+      signal.waitUntil([&] { return watch.found().contains(modest.guid()) && watch.found().contains(bold.guid()); }));
+  EXPECT_EQ(watch.found().at(modest.guid()).qos_text,
+            "reliability: reliable\ndurability: volatile\nownership: shared\nkeyed: false\n");
+  EXPECT_EQ(watch.found().at(bold.guid()).qos_text,
+            "reliability: best_effort\ndurability: volatile\nownership: exclusive\nkeyed: false\n"
+            "deadline_ns: 20000000\nliveliness: manual_by_topic\nlease_ns: 3000000000\nownership_strength: 7\n");
+}
+
+TEST(ParticipantTest, WritersAreHeardInOtherPartitionsAsWell) {
+  Signal signal;
+  ParticipantOptions options = memberOptions("plant", "cell");
+  options.other_partitions = {test::testPartition("second"), ""};
+  Participant plant(options);
+  RawWriter out(plant, {.topic = "topic", .type = "baton::test::A", .profile = Profile::kEvent});
+  std::vector<std::unique_ptr<Participant>> members;
+  std::vector<std::unique_ptr<RawReader>> readers;
+  for (const char* partition : {"cell", "second", "third"}) {
+    members.push_back(std::make_unique<Participant>(memberOptions(partition, partition)));
+  }
+  ParticipantOptions nowhere = memberOptions("nowhere", "");
+  nowhere.partition.clear();
+  members.push_back(std::make_unique<Participant>(nowhere));
+  for (const auto& member : members) {
+    readers.push_back(std::make_unique<RawReader>(
+        *member, EndpointOptions{.topic = "topic", .type = "baton::test::A", .profile = Profile::kEvent},
+        [](const RawSample&) {}, [&] { signal.notify(); }));
+  }
+  EXPECT_TRUE(signal.waitUntil([&] {
+    return !readers[0]->matched().empty() && !readers[1]->matched().empty() && !readers[3]->matched().empty();
+  }));
+  EXPECT_TRUE(readers[2]->matched().empty());
+}
+
 TEST(ParticipantTest, AParticipantMadeLaterLearnsOfTheWritersThereAre) {
   Signal signal;
   Watch watch(signal, "cell");
