@@ -26,6 +26,12 @@ std::optional<std::int64_t> Pacer::deadline(std::uint64_t step) const noexcept {
   return anchor_ns_ + std::llround(std::min(wait_ns, kForever_ns));
 }
 
+std::uint64_t Pacer::stepAt(std::int64_t now_ns) const noexcept {
+  if (rate_ <= 0.0 || now_ns <= anchor_ns_) return anchor_step_;
+  const double steps = static_cast<double>(now_ns - anchor_ns_) * rate_ / static_cast<double>(step_ns_);
+  return anchor_step_ + static_cast<std::uint64_t>(std::min(steps, 9e18));
+}
+
 bool Pacer::isDue(std::uint64_t step, std::int64_t now_ns) const noexcept {
   const std::optional<std::int64_t> due = deadline(step);
   return !due || now_ns >= *due;

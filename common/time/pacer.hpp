@@ -22,6 +22,8 @@ class Pacer {
 
   /// When `step` may begin; nothing when there is no pacing.
   [[nodiscard]] std::optional<std::int64_t> deadline(std::uint64_t step) const noexcept;
+  /// The step that is due now: the inverse of deadline(). The anchor's own step before that, and without pacing.
+  [[nodiscard]] std::uint64_t stepAt(std::int64_t now_ns) const noexcept;
   [[nodiscard]] bool isDue(std::uint64_t step, std::int64_t now_ns) const noexcept;
 
  private:

@@ -88,6 +88,18 @@ TEST(Pacer, AStallIsForgivenAndASmallDelayCaughtUp) {
   EXPECT_EQ(pacer.deadline(11), late_ns + kStep_ns) << "after a stall it goes on at its rate from there";
 }
 
+TEST(Pacer, TellsWhichStepIsDue) {
+  Pacer pacer(kStep_ns, 2.0);
+  pacer.anchor(100, 1'000);
+  EXPECT_EQ(pacer.stepAt(0), 100U) << "before the anchor";
+  for (const std::uint64_t step : {100ull, 101ull, 7'777ull}) {
+    EXPECT_EQ(pacer.stepAt(*pacer.deadline(step)), step);
+    EXPECT_EQ(pacer.stepAt(*pacer.deadline(step + 1) - 1), step);
+  }
+  pacer.setRate(0.0, 200, 5'000);
+  EXPECT_EQ(pacer.stepAt(1'000'000'000), 200U) << "without pacing no step has its time";
+}
+
 TEST(Pacer, RateZeroNeverWaits) {
   Pacer pacer(kStep_ns, 0.0);
   pacer.anchor(0, 1'000'000'000);
