@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <vector>
 
 #include "control/nearest_name.hpp"
@@ -60,6 +62,16 @@ CLI::Option* addTransport(CLI::App& app, dds::Transport& transport) {
           "udp, or shm: faster, but after kill -9 shared memory leaves files in /dev/shm behind")
       ->check(CLI::IsMember({"udp", "shm"}))
       ->default_str(dds::toString(transport));
+}
+
+double parseRate(const std::string& what, const std::string& text) {
+  if (text == "max") return 0.0;
+  double rate = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(rate) || rate <= 0.0) {
+    throw UsageError(what + ": expected a number above 0, or max, found '" + text + "'");
+  }
+  return rate;
 }
 
 void addScheduling(CLI::App& app, Scheduling& scheduling) {

@@ -24,6 +24,8 @@ CLI::Option* addCell(CLI::App& app, std::string& cell);
 CLI::Option* addDomain(CLI::App& app, int& domain);
 /// --transport: udp or shm.
 CLI::Option* addTransport(CLI::App& app, dds::Transport& transport);
+/// A rate as people write it: seconds per second, or max, which is 0. Throws UsageError, saying `what` it was for.
+[[nodiscard]] double parseRate(const std::string& what, const std::string& text);
 /// --fifo and --cpus.
 void addScheduling(CLI::App& app, Scheduling& scheduling);
 

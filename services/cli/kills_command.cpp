@@ -10,12 +10,12 @@
 
 #include "kills/kill_judge.hpp"
 #include "mcap/reader.hpp"
-#include "progress_line.hpp"
 #include "rerun.hpp"
 #include "run_commands.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/progress_line.hpp"
 
 namespace baton {
 namespace {

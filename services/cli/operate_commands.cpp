@@ -1,7 +1,6 @@
 #include "operate_commands.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "latest_by_name.hpp"
 #include "messages/state_names.hpp"
 #include "run_commands.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/service_options.hpp"
@@ -172,17 +172,7 @@ void addSimCommands(CLI::App& app, const std::shared_ptr<CellTarget>& target, Ex
       ->required();
   add("rate", "simulated seconds per second, or max", msg::SIM_RATE)
       ->add_option_function<std::string>(
-          "rate",
-          [request](const std::string& text) {
-            if (text == "max") return request->rate(0.0);
-            char* end = nullptr;
-            const double rate = std::strtod(text.c_str(), &end);
-            if (end == text.c_str() || *end != '\0' || !std::isfinite(rate) || rate <= 0.0) {
-              throw UsageError("sim rate: expected a positive number or max, found " + text);
-            }
-            request->rate(rate);
-          },
-          "X or max")
+          "rate", [request](const std::string& text) { request->rate(parseRate("sim rate", text)); }, "X or max")
       ->required();
 }
 

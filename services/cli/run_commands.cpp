@@ -10,12 +10,12 @@
 #include <memory>
 
 #include "cell_client.hpp"
-#include "progress_line.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/log.hpp"
 #include "runtime/monolithic_run.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/progress_line.hpp"
 #include "runtime/timing.hpp"
 
 namespace baton {

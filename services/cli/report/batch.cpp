@@ -14,12 +14,12 @@
 #include <memory>
 
 #include "dds/topics.hpp"
-#include "progress_line.hpp"
 #include "recording.hpp"
 #include "runtime/build_id.hpp"
 #include "runtime/child.hpp"
 #include "runtime/log.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/progress_line.hpp"
 #include "runtime/scenario.hpp"
 
 namespace baton {
