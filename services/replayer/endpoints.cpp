@@ -1,5 +1,7 @@
 #include "endpoints.hpp"
 
+#include <algorithm>
+#include <charconv>
 #include <sstream>
 
 #include "base/error.hpp"
@@ -24,6 +26,24 @@ std::string valueOf(const std::map<std::string, std::string>& values, const std:
   return found == values.end() ? "" : found->second;
 }
 
+/// 0 for what is not recorded, or is no number.
+template <class Number>
+Number numberOf(const std::map<std::string, std::string>& values, const std::string& key) {
+  const std::string text = valueOf(values, key);
+  Number number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return std::max<Number>(number, 0);
+}
+
+dds::Liveliness livelinessOf(const std::map<std::string, std::string>& qos) {
+  using Kind = dds::Liveliness::Kind;
+  const std::string kind = valueOf(qos, "liveliness");
+  return {.kind = kind == "manual_by_topic"         ? Kind::kManualByTopic
+                  : kind == "manual_by_participant" ? Kind::kManualByParticipant
+                                                    : Kind::kAutomatic,
+          .lease_ns = numberOf<std::int64_t>(qos, "lease_ns")};
+}
+
 }  // namespace
 
 dds::EndpointOptions replayEndpoint(const mcap::Channel& channel, const mcap::Schema* schema,
@@ -43,7 +63,11 @@ dds::EndpointOptions replayEndpoint(const mcap::Channel& channel, const mcap::Sc
           .type = type,
           .profile = valueOf(qos, "durability") == "volatile" ? dds::Profile::kLoop : dds::Profile::kEvent,
           .keyed = valueOf(qos, "keyed") == "true",
-          .exclusive_ownership = valueOf(qos, "ownership") == "exclusive"};
+          .exclusive_ownership = valueOf(qos, "ownership") == "exclusive",
+          .best_effort = valueOf(qos, "reliability") == "best_effort",
+          .deadline_ns = numberOf<std::int64_t>(qos, "deadline_ns"),
+          .liveliness = livelinessOf(qos),
+          .ownership_strength = numberOf<std::uint32_t>(qos, "ownership_strength")};
 }
 
 }  // namespace baton

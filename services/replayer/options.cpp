@@ -1,7 +1,6 @@
 #include "options.hpp"
 
 #include <charconv>
-#include <cmath>
 
 #include "base/error.hpp"
 #include "runtime/command_line.hpp"
@@ -10,14 +9,16 @@
 namespace baton {
 namespace {
 
-double parseRate(const std::string& text) {
-  if (text == "max") return 0.0;
-  double rate = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(rate) || rate <= 0.0) {
-    throw UsageError("--rate: expected a number above 0, or max, found '" + text + "'");
+/// The value behind --loop; none stands for passes without end.
+std::uint32_t parsePasses(const std::string& text) {
+  if (text.empty()) return 0;
+  std::uint32_t passes = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), passes);
+  if (error != std::errc() || end != text.data() + text.size() || passes == 0) {
+    throw UsageError("--loop: expected a number of passes above 0, or nothing, found '" + text +
+                     "'; a recording goes before --loop");
   }
-  return rate;
+  return passes;
 }
 
 std::map<std::string, std::string> parseRemap(const std::vector<std::string>& pairs) {
@@ -39,20 +40,30 @@ std::map<std::string, std::string> parseRemap(const std::vector<std::string>& pa
 
 bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& options) {
   std::string rate = "1";
+  std::string passes;
   std::vector<std::string> remap;
   CLI::App app{
-      "Publishes a recording again: the recorded bytes, on the recorded topics, with their source timestamps and in\n"
-      "their rhythm. It speaks in the partition cell/run, so give both to whoever listens.\n"
-      "A recording that was cut or damaged is replayed as far as it can be read."};
+      "Publishes a recording again: the recorded bytes, on the recorded topics, with their source timestamps, their "
+      "QoS\n"
+      "and in their rhythm. It speaks in the partition cell/run, so give both to whoever listens.\n"
+      "A recording that was cut or damaged is replayed as far as it can be read.\n"
+      "On a terminal: space pauses and resumes; right: 1 s ahead, in a pause the next message; left: 1 s back;\n"
+      "+ and - double and halve the rate; q ends it. From elsewhere: `baton player`."};
   app.footer(
-      "Exit codes: 0 all was replayed, 1 the recording is cut or damaged and the rest was replayed,\n"
-      "2 wrong input or not a recording, 3 the file or DDS is not available, 130 interrupted.");
+      "Exit codes: 0 all was replayed, or as much as was asked for; 1 the recording is cut or damaged and the rest "
+      "was\n"
+      "replayed, or a message was later than --max-late-us; 2 wrong input or not a recording, 3 the file or DDS is "
+      "not\n"
+      "available, 130 interrupted.");
   app.add_option("file", options.file, "recording (MCAP)")->required();
   addDomain(app, options.domain)->envname("BATON_DOMAIN");
   addCell(app, options.cell);
   app.add_option("--run", options.run, "run to speak in (default: a new one)");
+  app.add_option("--partition", options.partition,
+                 "be heard in this DDS partition as well; '' for listeners that set none");
   addTransport(app, options.transport);
   app.add_option("--topics", options.topics, "only these topics: a,b,c")->delimiter(',')->allow_extra_args(false);
+  app.add_option("--remap", remap, "publish topics under other names: old=new ...");
   app.add_option(
          "--rate", rate,
          "recorded seconds per second, or max; above 1 it waits for slow readers rather than let them lose messages")
@@ -60,15 +71,34 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
   app.add_option("--from", options.from_s, "start here, in s of log time from the recording's first message")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--to", options.to_s, "end here, likewise")->check(CLI::NonNegativeNumber);
+  CLI::Option* loop = app.add_option("--loop", passes,
+                                     "N times in all, or without end: at once from the start again, with the source "
+                                     "timestamps of the recording, which go back; sequence numbers go on")
+                          ->expected(0, 1)
+                          ->type_name("[N]");
+  app.add_flag("--paused", options.starts_paused, "wait in front of the first message until something is asked for");
   app.add_option("--wait-for", options.wait_for, "wait until this many processes read each topic")
       ->capture_default_str();
-  app.add_option("--remap", remap, "publish topics under other names: old=new ...");
+  app.add_option("--wait-for-readers", options.wait_for_readers,
+                 "wait until each of these services reads a topic: recorder,environment")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--overdue-us", options.overdue_us, "count messages that are later than this")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--max-late-us", options.max_late_us, "exit code 1 when a message was later than this")
+      ->check(CLI::NonNegativeNumber);
+  addScheduling(app, options.scheduling);
   app.add_flag("--json", options.json, "the summary as a JSON object");
   if (!parseCommandLine(app, argc, argv)) return false;
-  options.rate = parseRate(rate);
+  options.rate = parseRate("--rate", rate);
   options.remap = parseRemap(remap);
+  if (loop->count() > 0) options.passes = parsePasses(passes);
   if (options.from_s && options.to_s && *options.to_s < *options.from_s) {
     throw UsageError("--to: expected a time that is not before --from");
+  }
+  if (options.max_late_us && options.rate <= 0.0) {
+    throw UsageError("--max-late-us: expected a --rate at which messages have their time, found max");
   }
   if (options.run.empty()) options.run = newRunId();
   return true;

@@ -7,21 +7,29 @@
 #include <vector>
 
 #include "dds/types.hpp"
+#include "runtime/scheduling.hpp"
 
 namespace baton {
 
 struct ReplayOptions {
   std::string file;
   int domain = 0;
-  std::string cell = "replay";  // a partition of its own, so that a running cell is not disturbed
-  std::string run;              // never empty once parsed
+  std::string cell = "replay";           // a partition of its own, so that a running cell is not disturbed
+  std::string run;                       // never empty once parsed
+  std::optional<std::string> partition;  // heard there as well; empty: where listeners set none
   dds::Transport transport = dds::Transport::kUdp;
   std::vector<std::string> topics;           // recorded names; all when empty
   std::map<std::string, std::string> remap;  // recorded name to the name published
   double rate = 1.0;                         // recorded seconds per second; 0 for as fast as readers take it
   std::optional<double> from_s;              // log time from the recording's first message; from its start
   std::optional<double> to_s;                // to its end
-  std::size_t wait_for = 0;                  // reading processes on every topic before the first message
+  std::uint32_t passes = 1;                  // through it; 0 without end
+  bool starts_paused = false;
+  std::size_t wait_for = 0;                   // reading processes on every topic before the first message
+  std::vector<std::string> wait_for_readers;  // services that read at least one
+  double overdue_us = 1000.0;                 // later messages are counted
+  std::optional<double> max_late_us;          // a later one is a failure
+  Scheduling scheduling;
   bool json = false;
 };
 

@@ -1,35 +1,43 @@
 /// Publishes the messages of a recording as raw bytes, each writer's by a writer of its own, spaced as they were
-/// logged.
+/// logged. Playlist says what, Playback when, Outlet sends; this is the loop that joins them, and carries out what is
+/// asked for from elsewhere and by keys.
 ///
-/// One thread reads, waits and writes; deadlines are absolute on the steady clock, so delays do not add up. Signals
-/// only set a flag that every wait looks at.
+/// One thread does all of it; deadlines are absolute on the steady clock, so delays do not add up. Requests, keys and
+/// signals end its sleep.
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <set>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "audience.hpp"
 #include "base/error.hpp"
-#include "dds/endpoint.hpp"
-#include "dds/typed.hpp"
-#include "lateness.hpp"
-#include "mcap/reader.hpp"
 #include "options.hpp"
+#include "outlet.hpp"
+#include "playback.hpp"
+#include "playlist.hpp"
+#include "remote.hpp"
+#include "runtime/progress_line.hpp"
+#include "sleeper.hpp"
+#include "terminal.hpp"
+#include "time/histogram.hpp"
 
 namespace baton {
 
 struct ReplayResult {
   bool was_interrupted = false;
+  bool was_stopped = false;  // by request
   std::uint64_t messages = 0;
-  std::uint64_t total = 0;  // that could be read and were asked for
+  std::uint64_t total = 0;  // of one pass, that could be read and were asked for
+  std::uint32_t passes = 0;
   std::size_t writers = 0;
   std::size_t topics = 0;
-  double recorded_s = 0.0;  // log time from the first to the last message that was sent
-  double elapsed_s = 0.0;   // the same on the wall clock
-  Lateness lateness;        // behind the deadline when DDS had the message; zeros at the highest rate, which has none
-  std::vector<std::string> problems;  // what of the recording could not be replayed, and why
+  double recorded_s = 0.0;            // log time that was played
+  double elapsed_s = 0.0;             // the same on the wall clock, pauses included
+  Histogram lateness_ns;              // behind the deadline when DDS had the message; of those that had one
+  std::uint64_t overdue = 0;          // later than asked for
+  std::vector<std::string> problems;  // what of the recording could not be replayed as it was, and why
 };
 
 /// 0, or 1 when there were problems, or 130.
@@ -37,45 +45,57 @@ struct ReplayResult {
 
 class Replayer {
  public:
-  /// Opens the recording and makes the writers. Throws FormatError when it is not one, UsageError for topics it does
-  /// not have, and UnavailableError when the file, DDS or the run is not to be had.
+  /// Opens the recording and makes the writers. Throws as Playlist does, and UnavailableError when DDS or the run is
+  /// not to be had.
   explicit Replayer(const ReplayOptions& options);
   Replayer(const Replayer&) = delete;
   Replayer& operator=(const Replayer&) = delete;
 
-  /// Sends everything, or as much as Ctrl-C and SIGTERM allow, and waits until the readers have it.
+  /// Sends everything, or as much as operators, keys, Ctrl-C and SIGTERM allow, and waits until the readers have it.
   [[nodiscard]] ReplayResult run();
 
  private:
-  void noteDamage(const mcap::Damage& damage);
-  void noteProblem(const std::string& problem);
-  void chooseChannels();
-  void checkNames() const;
-  [[nodiscard]] std::uint64_t countMessages() const;
+  // replayer.cpp: the loop
   void waitForReaders();
   void play();
-  [[nodiscard]] bool sleepUntil(std::int64_t deadline_ns);
-  void waitForAcknowledgments();
-  void reportWhenDue();
-  void report(msg::ReplayState state);
+  [[nodiscard]] bool goOnAtEnd();
+  void fetch();
+  void send(const Playback::Due& due);
+  void noteLateness(std::int64_t late_ns);
+  [[nodiscard]] bool mustEnd() const { return playback_.isStopped() || isInterrupted(); }
+  void sleepUntil(std::int64_t deadline_ns);
+  void reportBefore(std::int64_t deadline_ns);
+  void finish();
+
+  // replayer_control.cpp: what is asked for, and how it stands
+  void serve();
+  void obey(const msg::ReplayRequest& request);
+  [[nodiscard]] std::string refusalOf(const msg::ReplayRequest& request) const;
+  void seek(std::uint64_t position_ns);
+  void endStep(const std::string& why_short);
+  void answer(std::uint64_t request_id, const std::string& refusal);
+  void obey(Key key);
+  void report();
+  [[nodiscard]] msg::ReplayState state() const;
+  [[nodiscard]] std::uint64_t position() const;
+  void showProgress(msg::ReplayState state);
 
   ReplayOptions options_;
-  std::set<mcap::ChannelId> deaf_;   // a reader of it does not acknowledge
-  std::set<std::uint64_t> damaged_;  // offsets of damage told of
-  ReplayResult result_;
-  mcap::Reader reader_;
-  mcap::MessageFilter filter_;
+  Sleeper sleeper_;
+  Playlist playlist_;
+  Playback playback_;
   dds::Participant participant_;
-  dds::Writer<msg::ReplayStatus> status_out_;
-  std::map<mcap::ChannelId, dds::RawWriter> writers_;
-  std::vector<double> lateness_us_;  // one a message
-  std::size_t reported_ = 0;         // of these, in a status
-  msg::ReplayState state_ = msg::REPLAY_WAITING;
-  std::uint64_t first_log_time_ns_ = 0;  // of what is sent
-  std::uint64_t log_time_ns_ = 0;        // of the last message sent
-  std::int64_t begin_ns_ = 0;            // steady clock
+  Outlet outlet_;
+  Remote remote_;
+  ReplayResult result_;
+  std::optional<mcap::MessageView> next_;  // nothing at the end
+  enum class Phase { kWaiting, kPlaying, kOver } phase_ = Phase::kWaiting;
+  std::string waits_for_;
+  std::optional<msg::ReplayRequest> step_;  // under way, to be answered when it is done
+  std::int64_t begin_ns_ = 0;
   std::int64_t next_report_ns_ = 0;
-  bool has_progress_line_ = false;
+  std::optional<Terminal> terminal_;
+  std::optional<ProgressLine> progress_;
 };
 
 }  // namespace baton

@@ -11,18 +11,29 @@ double messagesPerSecond(const ReplayResult& result) {
   return result.elapsed_s > 0.0 ? static_cast<double>(result.messages) / result.elapsed_s : 0.0;
 }
 
+double inMicroseconds(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-3; }
+
+std::string endText(const ReplayResult& result) {
+  if (result.was_interrupted) return "interrupted";
+  return result.was_stopped ? "stopped" : "replayed";
+}
+
+std::string latenessText(const ReplayResult& result, const ReplayOptions& options) {
+  const Histogram& lateness = result.lateness_ns;
+  return fmt::format("lateness     p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us, {} messages above {:g} us\n",
+                     inMicroseconds(lateness.quantile(0.5)), inMicroseconds(lateness.quantile(0.99)),
+                     inMicroseconds(lateness.max()), result.overdue, options.overdue_us);
+}
+
 }  // namespace
 
 std::string summaryText(const ReplayResult& result, const ReplayOptions& options) {
-  std::string text = fmt::format("{}  {} of {} messages, {} writers, {} topics\n",
-                                 result.was_interrupted ? "interrupted" : "replayed   ", result.messages, result.total,
-                                 result.writers, result.topics);
+  std::string text = fmt::format("{:<13}{} of {} messages, {} writers, {} topics\n", endText(result), result.messages,
+                                 result.total, result.writers, result.topics);
+  if (result.passes > 1) text += fmt::format("passes       {}\n", result.passes);
   text += fmt::format("duration     {:.3f} s for {:.3f} recorded s, {:.0f} messages/s\n", result.elapsed_s,
                       result.recorded_s, messagesPerSecond(result));
-  if (options.rate > 0.0) {
-    text += fmt::format("lateness     p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us\n", result.lateness.p50_us,
-                        result.lateness.p99_us, result.lateness.max_us);
-  }
+  if (result.lateness_ns.count() > 0) text += latenessText(result, options);
   for (const std::string& problem : result.problems) text += "problem      " + problem + "\n";
   text.pop_back();
   return text;
@@ -34,8 +45,10 @@ std::string jsonText(const ReplayResult& result, const ReplayOptions& options) {
                               {"cell", options.cell},
                               {"run", options.run},
                               {"interrupted", result.was_interrupted},
+                              {"stopped", result.was_stopped},
                               {"messages", result.messages},
                               {"total", result.total},
+                              {"passes", result.passes},
                               {"writers", result.writers},
                               {"topics", result.topics},
                               {"rate", nullptr},
@@ -43,11 +56,15 @@ std::string jsonText(const ReplayResult& result, const ReplayOptions& options) {
                               {"elapsed_s", result.elapsed_s},
                               {"messages_per_s", messagesPerSecond(result)},
                               {"lateness_us", nullptr},
+                              {"overdue", nullptr},
+                              {"overdue_us", options.overdue_us},
                               {"problems", result.problems}};
-  if (options.rate > 0.0) {
-    json["rate"] = options.rate;
-    json["lateness_us"] = {
-        {"p50", result.lateness.p50_us}, {"p99", result.lateness.p99_us}, {"max", result.lateness.max_us}};
+  if (options.rate > 0.0) json["rate"] = options.rate;
+  if (const Histogram& lateness = result.lateness_ns; lateness.count() > 0) {
+    json["lateness_us"] = {{"p50", inMicroseconds(lateness.quantile(0.5))},
+                           {"p99", inMicroseconds(lateness.quantile(0.99))},
+                           {"max", inMicroseconds(lateness.max())}};
+    json["overdue"] = result.overdue;
   }
   return toText(json);
 }

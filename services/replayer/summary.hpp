@@ -9,7 +9,8 @@
 namespace baton {
 
 [[nodiscard]] std::string summaryText(const ReplayResult& result, const ReplayOptions& options);
-/// A JSON object; times in the units that keys end with. "rate" and "lateness_us" are null at the highest rate.
+/// A JSON object; times in the units that keys end with. "rate" is the one asked for at the start, null for the
+/// highest; "lateness_us" and "overdue" are null when no message had a time to go out at.
 [[nodiscard]] std::string jsonText(const ReplayResult& result, const ReplayOptions& options);
 
 }  // namespace baton

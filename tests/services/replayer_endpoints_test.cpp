@@ -36,6 +36,24 @@ TEST(ReplayEndpoint, TakesKeysAndOwnershipFromTheRecording) {
   EXPECT_TRUE(endpoint.exclusive_ownership);
 }
 
+TEST(ReplayEndpoint, TakesWhatReadersMayDemandFromTheRecording) {
+  mcap::Channel channel = recordedChannel("volatile");
+  EXPECT_FALSE(replayEndpoint(channel, nullptr, {}).best_effort);
+  EXPECT_EQ(replayEndpoint(channel, nullptr, {}).deadline_ns, 0);
+  channel.metadata["qos"] =
+      "reliability: best_effort\ndurability: volatile\nownership: exclusive\nkeyed: true\ndeadline_ns: 20000000\n"
+      "liveliness: manual_by_topic\nlease_ns: 3000000000\nownership_strength: 7\n";
+  const dds::EndpointOptions endpoint = replayEndpoint(channel, nullptr, {});
+  EXPECT_TRUE(endpoint.best_effort);
+  EXPECT_EQ(endpoint.deadline_ns, 20'000'000);
+  EXPECT_EQ(endpoint.liveliness,
+            (dds::Liveliness{.kind = dds::Liveliness::Kind::kManualByTopic, .lease_ns = 3'000'000'000}));
+  EXPECT_EQ(endpoint.ownership_strength, 7U);
+  channel.metadata["qos"] = "durability: volatile\ndeadline_ns: soon\nlease_ns: -1\n";
+  EXPECT_EQ(replayEndpoint(channel, nullptr, {}).deadline_ns, 0) << "what is no number promises nothing";
+  EXPECT_EQ(replayEndpoint(channel, nullptr, {}).liveliness, dds::Liveliness{});
+}
+
 TEST(ReplayEndpoint, OffersLateJoinersEverythingWhenTheQosIsNotRecorded) {
   mcap::Channel channel = recordedChannel("volatile");
   channel.metadata.erase("qos");

@@ -52,6 +52,36 @@ TEST(ReplayOptions, RemapTakesPairs) {
   EXPECT_THROW((void)parsed({"run.mcap", "--remap", "a=b", "a=c"}), UsageError);
 }
 
+TEST(ReplayOptions, ALoopHasAnEndOrNone) {
+  EXPECT_EQ(parsed({"run.mcap"}).passes, 1U);
+  EXPECT_EQ(parsed({"run.mcap", "--loop"}).passes, 0U);
+  EXPECT_EQ(parsed({"run.mcap", "--loop", "--paused"}).passes, 0U);
+  EXPECT_EQ(parsed({"run.mcap", "--loop", "3"}).passes, 3U);
+  EXPECT_EQ(parsed({"--loop=3", "run.mcap"}).passes, 3U);
+  for (const char* wrong : {"0", "-1", "x", "1.5"}) {
+    EXPECT_THROW((void)parsed({"run.mcap", "--loop", wrong}), UsageError) << wrong;
+  }
+}
+
+TEST(ReplayOptions, ReadersAreAListThatLeavesTheFileAlone) {
+  const ReplayOptions options = parsed({"--wait-for-readers", "recorder,environment", "run.mcap", "--wait-for", "2"});
+  EXPECT_EQ(options.wait_for_readers, (std::vector<std::string>{"recorder", "environment"}));
+  EXPECT_EQ(options.file, "run.mcap");
+  EXPECT_EQ(options.wait_for, 2U);
+}
+
+TEST(ReplayOptions, APartitionMayBeTheOneWithoutAName) {
+  EXPECT_FALSE(parsed({"run.mcap"}).partition);
+  EXPECT_EQ(parsed({"run.mcap", "--partition", ""}).partition, "");
+  EXPECT_EQ(parsed({"run.mcap", "--partition", "lab"}).partition, "lab");
+}
+
+TEST(ReplayOptions, ALimitOfLatenessNeedsARate) {
+  EXPECT_EQ(parsed({"run.mcap", "--max-late-us", "500"}).max_late_us, 500.0);
+  EXPECT_THROW((void)parsed({"run.mcap", "--max-late-us", "500", "--rate", "max"}), UsageError);
+  EXPECT_THROW((void)parsed({"run.mcap", "--max-late-us", "-1"}), UsageError);
+}
+
 TEST(ReplayOptions, RefuseATimeRangeThatEndsBeforeItStarts) {
   EXPECT_EQ(parsed({"run.mcap", "--from", "1", "--to", "2"}).to_s, 2.0);
   EXPECT_THROW((void)parsed({"run.mcap", "--from", "2", "--to", "1"}), UsageError);

@@ -1,0 +1,121 @@
+#include "playlist.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "control/nearest_name.hpp"
+#include "dds/topics.hpp"
+#include "endpoints.hpp"
+
+namespace baton {
+namespace {
+
+std::vector<std::string> topicNames(const mcap::Reader& reader) {
+  std::set<std::string> names;
+  for (const auto& [id, channel] : reader.channels()) names.insert(channel.topic);
+  return {names.begin(), names.end()};
+}
+
+/// A replay that was recorded would be obeyed, and taken for this one.
+bool isReplayersOwn(const std::string& topic) {
+  return topic == dds::topics::kReplayRequest.name || topic == dds::topics::kReplayReply.name ||
+         topic == dds::topics::kReplayStatus.name;
+}
+
+}  // namespace
+
+Playlist::Playlist(const ReplayOptions& options)
+    : reader_(options.file, {.on_damage = [this](const mcap::Damage& damage) { noteDamage(damage); }}) {
+  if (!reader_.info().is_complete) noteProblem("the recording was cut: " + reader_.info().problem);
+  checkNames(options);
+  const auto logTimeAt = [&](double seconds) {
+    return start_ns() + static_cast<std::uint64_t>(std::min(seconds * 1e9, 9e18));
+  };
+  filter_.start_time_ns = options.from_s ? logTimeAt(*options.from_s) : start_ns();
+  if (options.to_s) filter_.end_time_ns = logTimeAt(*options.to_s);
+  chooseChannels(options);
+  total_ = countMessages(options.from_s || options.to_s);
+  rewind();
+}
+
+void Playlist::noteProblem(const std::string& problem) {
+  spdlog::warn("{}", problem);
+  problems_.push_back(problem);
+}
+
+/// Each pass over the file comes across the same damage.
+void Playlist::noteDamage(const mcap::Damage& damage) {
+  if (!damaged_.insert(damage.offset).second) return;
+  noteProblem(std::to_string(damage.length) + " bytes at byte " + std::to_string(damage.offset) +
+              " cannot be read: " + damage.reason);
+}
+
+void Playlist::checkNames(const ReplayOptions& options) const {
+  const std::vector<std::string> known = topicNames(reader_);
+  const auto check = [&](const std::string& topic) {
+    if (!std::binary_search(known.begin(), known.end(), topic)) throw UsageError(unknownName("topic", topic, known));
+  };
+  for (const std::string& topic : options.topics) check(topic);
+  for (const auto& [old_name, new_name] : options.remap) check(old_name);
+}
+
+void Playlist::chooseChannels(const ReplayOptions& options) {
+  for (const auto& [id, channel] : reader_.channels()) {
+    const auto& wanted = options.topics;
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), channel.topic) == wanted.end()) continue;
+    const auto schema = reader_.schemas().find(channel.schema_id);
+    try {
+      dds::EndpointOptions endpoint =
+          replayEndpoint(channel, schema == reader_.schemas().end() ? nullptr : &schema->second, options.remap);
+      if (isReplayersOwn(endpoint.topic)) {
+        spdlog::info("{} is left out: this replay has a topic of that name (--remap gives it another)", endpoint.topic);
+        continue;
+      }
+      endpoints_.emplace(id, std::move(endpoint));
+      filter_.channels.push_back(id);
+    } catch (const UsageError& error) {
+      noteProblem(error.what());
+    }
+  }
+  if (endpoints_.empty()) throw UsageError(options.file + ": expected a topic to replay, found none");
+}
+
+std::uint64_t Playlist::countMessages(bool has_range) const {
+  std::uint64_t count = 0;
+  if (has_range) {
+    reader_.forEachMessage(filter_, [&](const mcap::MessageView&) { ++count; });
+    return count;
+  }
+  const auto& counts = reader_.statistics().channel_message_counts;
+  for (const mcap::ChannelId id : filter_.channels) {
+    if (const auto found = counts.find(id); found != counts.end()) count += found->second;
+  }
+  return count;
+}
+
+bool Playlist::next(mcap::MessageView& message) { return cursor_->next(message); }
+
+void Playlist::seek(std::uint64_t log_time_ns) {
+  mcap::MessageFilter filter = filter_;
+  filter.start_time_ns = std::max(log_time_ns, filter_.start_time_ns);
+  cursor_.emplace(reader_.messages(filter));
+}
+
+bool Playlist::hasTopic(const std::string& recorded_name) const {
+  return std::any_of(endpoints_.begin(), endpoints_.end(),
+                     [&](const auto& entry) { return reader_.channels().at(entry.first).topic == recorded_name; });
+}
+
+std::uint64_t Playlist::duration_ns() const {
+  return std::max(reader_.statistics().end_time_ns, start_ns()) - start_ns();
+}
+
+std::uint64_t Playlist::from_ns() const { return std::min(filter_.start_time_ns - start_ns(), duration_ns()); }
+
+std::uint64_t Playlist::to_ns() const {
+  return std::min(std::max(filter_.end_time_ns, start_ns()) - start_ns(), duration_ns());
+}
+
+}  // namespace baton

@@ -1,0 +1,62 @@
+/// What is replayed: the chosen topics of a recording, between two times, message after message in the order of log
+/// time. Memory is that of the chunks being read, however long the recording.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "dds/endpoint.hpp"
+#include "mcap/reader.hpp"
+#include "options.hpp"
+
+namespace baton {
+
+class Playlist {
+ public:
+  /// Opens the recording. Throws FormatError when it is not one, UsageError for topics it does not have or when nothing
+  /// of it can be replayed, and UnavailableError when the file is not to be had.
+  explicit Playlist(const ReplayOptions& options);
+  Playlist(const Playlist&) = delete;
+  Playlist& operator=(const Playlist&) = delete;
+
+  /// The next message, valid until another is asked for; false at the end.
+  [[nodiscard]] bool next(mcap::MessageView& message);
+  /// The next message is the first at or after this log time. Reads no more of the file than its chunk.
+  void seek(std::uint64_t log_time_ns);
+  void rewind() { seek(filter_.start_time_ns); }
+
+  /// The writers that stand in for the recorded ones.
+  [[nodiscard]] const std::map<mcap::ChannelId, dds::EndpointOptions>& endpoints() const { return endpoints_; }
+  /// Whether one of them stands in for a writer of this topic, as it was recorded.
+  [[nodiscard]] bool hasTopic(const std::string& recorded_name) const;
+  [[nodiscard]] std::uint64_t total() const { return total_; }  // messages from the first to the last time
+  /// Log times of the recording's first and last message; positions count from the first.
+  [[nodiscard]] std::uint64_t start_ns() const { return reader_.statistics().start_time_ns; }
+  [[nodiscard]] std::uint64_t duration_ns() const;
+  /// The part of it that is played, as positions.
+  [[nodiscard]] std::uint64_t from_ns() const;
+  [[nodiscard]] std::uint64_t to_ns() const;
+  /// What of the recording cannot be replayed, and why. More may be found on the way.
+  [[nodiscard]] const std::vector<std::string>& problems() const { return problems_; }
+
+ private:
+  void noteDamage(const mcap::Damage& damage);
+  void noteProblem(const std::string& problem);
+  void checkNames(const ReplayOptions& options) const;
+  void chooseChannels(const ReplayOptions& options);
+  [[nodiscard]] std::uint64_t countMessages(bool has_range) const;
+
+  std::vector<std::string> problems_;
+  std::set<std::uint64_t> damaged_;  // offsets of damage told of
+  mcap::Reader reader_;
+  mcap::MessageFilter filter_;
+  std::map<mcap::ChannelId, dds::EndpointOptions> endpoints_;
+  std::uint64_t total_ = 0;
+  std::optional<mcap::MessageCursor> cursor_;
+};
+
+}  // namespace baton

@@ -1,0 +1,32 @@
+/// The replay's own topics: what operators ask, what they are answered, how it stands.
+#pragma once
+
+#include <functional>
+#include <mutex>
+#include <vector>
+
+#include "dds/typed.hpp"
+
+namespace baton {
+
+class Remote {
+ public:
+  /// @param on_request  called when there is something to take, on a DDS thread.
+  Remote(dds::Participant& participant, std::function<void()> on_request);
+
+  /// The requests that came since this was asked last.
+  [[nodiscard]] std::vector<msg::ReplayRequest> take();
+  void answer(const msg::ReplayReply& reply) { replies_.write(reply); }
+  void tell(const msg::ReplayStatus& status) { status_.write(status); }
+  /// Waits, for a second at most, until everybody has what was said last.
+  void sayGoodbye();
+
+ private:
+  std::mutex mutex_;
+  std::vector<msg::ReplayRequest> requests_;
+  dds::Writer<msg::ReplayStatus> status_;
+  dds::Writer<msg::ReplayReply> replies_;
+  dds::Reader<msg::ReplayRequest> reader_;
+};
+
+}  // namespace baton
