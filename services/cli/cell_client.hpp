@@ -58,6 +58,8 @@ class CellClient {
                             const dds::Topic<Answer>& answer_topic, const std::function<bool(const Answer&)>& is_answer,
                             const std::string& service, std::chrono::milliseconds patience = kPatience);
 
+  /// The processes of the domain that discovery has told of so far.
+  [[nodiscard]] std::vector<dds::Peer> peers() const { return participant_.peers(); }
   [[nodiscard]] const RunInfo& info() const { return info_; }
   /// Unlike any other of this run.
   [[nodiscard]] static std::uint64_t newRequestId();

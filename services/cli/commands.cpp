@@ -12,6 +12,7 @@
 #include "model_command.hpp"
 #include "operate_commands.hpp"
 #include "param_command.hpp"
+#include "player_command.hpp"
 #include "replay_command.hpp"
 #include "rerun_command.hpp"
 #include "run_commands.hpp"
@@ -27,6 +28,7 @@ void addCommands(CLI::App& app, ExitCode& exit_code) {
   addOperateCommands(app, exit_code);
   addParamCommand(app, exit_code);
   addReplayCommand(app, exit_code);
+  addPlayerCommand(app, exit_code);
   addBagCommand(app, exit_code);
   addBranchCommand(app, exit_code);
   addRerunCommand(app, exit_code);

@@ -1,0 +1,182 @@
+#include "player_command.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "cell_target.hpp"
+#include "messages/state_names.hpp"
+#include "runtime/command_line.hpp"
+#include "runtime/json.hpp"
+
+namespace baton {
+namespace {
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kReplayer = "replayer";
+
+struct Arguments {
+  CellTarget target{.cell = "replay"};
+  std::string run;
+  msg::ReplayRequest request;
+};
+
+double inSeconds(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-9; }
+
+struct Replay {
+  RunInfo place;
+  msg::ReplayStatus status;
+};
+
+/// The replay that is meant. Throws UnavailableError when there is none, UsageError when there are several.
+Replay findReplay(const Arguments& arguments) {
+  const CellTarget& target = arguments.target;
+  RunInfo place;
+  place.cell = target.cell;
+  place.run = arguments.run.empty() ? "*" : arguments.run;
+  place.domain = target.domain;
+  CellClient observer(place);
+  const auto isGoingOn = [](const std::vector<msg::ReplayStatus>& all) {
+    return !all.empty() && all.back().state() != msg::REPLAY_FINISHED;
+  };
+  const auto statuses =
+      observer.collect<msg::ReplayStatus>(dds::topics::kReplayStatus, isGoingOn, CellClient::kStatusPatience);
+  if (!isGoingOn(statuses)) {
+    throw UnavailableError(fmt::format(
+        "nothing is replayed in cell {} of domain {}{}: start it with `baton replay FILE`, or say --cell, --domain and "
+        "--run of the one that is meant",
+        place.cell, place.domain, arguments.run.empty() ? "" : " as run " + arguments.run));
+  }
+  std::string runs;
+  for (const dds::Peer& peer : observer.peers()) {
+    if (peer.service != kReplayer || peer.cell != place.cell) continue;
+    if (!arguments.run.empty() && peer.run != arguments.run) continue;
+    runs += (runs.empty() ? "" : ", ") + ("--run " + peer.run);
+    place.run = peer.run;
+  }
+  if (runs.find(',') != std::string::npos) {
+    throw UsageError("expected to be told which replay of cell " + place.cell + " is meant: " + runs);
+  }
+  return {.place = place, .status = statuses.back()};
+}
+
+void tell(const Arguments& arguments) {
+  const auto [place, status] = findReplay(arguments);
+  const double position_s = inSeconds(status.position_ns());
+  const double duration_s = inSeconds(status.duration_ns());
+  if (arguments.target.json) {
+    std::cout << toText(Json{{"file", status.path().c_str()},
+                             {"domain", place.domain},
+                             {"cell", place.cell},
+                             {"run", place.run},
+                             {"state", toString(status.state())},
+                             {"waiting_for", status.waiting_for().c_str()},
+                             {"position_s", position_s},
+                             {"duration_s", duration_s},
+                             {"pass", status.pass()},
+                             {"passes", status.passes()},
+                             {"rate", status.rate()},
+                             {"messages", status.messages()},
+                             {"total", status.total()},
+                             {"lateness_us",
+                              {{"p50", status.lateness_p50_us()},
+                               {"p99", status.lateness_p99_us()},
+                               {"max", status.lateness_max_us()}}},
+                             {"overdue", status.overdue()}})
+              << '\n';
+    return;
+  }
+  std::string text = fmt::format("{} in cell {}, run {}\n{} at {:.6f} of {:.6f} s, {}", status.path().c_str(),
+                                 place.cell, place.run, toString(status.state()), position_s, duration_s,
+                                 status.rate() > 0.0 ? fmt::format("rate {:g}", status.rate()) : "as fast as possible");
+  if (status.passes() != 1) text += fmt::format(", pass {}", status.pass());
+  if (status.passes() > 1) text += fmt::format(" of {}", status.passes());
+  if (status.waiting_for().size() > 0) text += fmt::format(", waits for {}", status.waiting_for().c_str());
+  text += fmt::format(
+      "\n{} messages sent, of {} in a pass; lateness p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us, {} "
+      "overdue\n",
+      status.messages(), status.total(), status.lateness_p50_us(), status.lateness_p99_us(), status.lateness_max_us(),
+      status.overdue());
+  std::cout << text;
+}
+
+void ask(const Arguments& arguments, ExitCode& exit_code) {
+  CellClient client(findReplay(arguments).place);
+  msg::ReplayRequest request = arguments.request;
+  request.request_id(CellClient::newRequestId());
+  // A step is answered when it is done; replays manage ten messages in a millisecond.
+  const auto patience = CellClient::kPatience + std::chrono::milliseconds(std::min<std::uint64_t>(request.messages(), 3'600'000));
+  const auto reply = client.ask<msg::ReplayRequest, msg::ReplayReply>(
+      dds::topics::kReplayRequest, request, dds::topics::kReplayReply,
+      [&](const msg::ReplayReply& one) { return one.request_id() == request.request_id(); }, kReplayer, patience);
+  if (!reply) throw UnavailableError("the replayer did not answer; see `baton player status`");
+  exit_code = reply->accepted() ? ExitCode::kOk : ExitCode::kFailed;
+  const double position_s = inSeconds(reply->position_ns());
+  if (arguments.target.json) {
+    std::cout << toText(Json{{"accepted", reply->accepted()},
+                             {"position_s", position_s},
+                             {"messages", reply->messages()},
+                             {"reason", reply->reason().c_str()}})
+              << '\n';
+  } else if (reply->accepted()) {
+    std::cout << fmt::format("done at {:.6f} s, {} messages sent\n", position_s, reply->messages());
+  } else {
+    std::cout << fmt::format("refused at {:.6f} s: {}\n", position_s, reply->reason().c_str());
+  }
+}
+
+}  // namespace
+
+void addPlayerCommand(CLI::App& app, ExitCode& exit_code) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("player", "a replay that goes on: pause, step, seek, change the rate, stop");
+  command->require_subcommand(1);
+  command->footer(
+      "Exit codes: 0 done, 1 refused or cut short, 2 wrong input, or several replays go on and none is named,\n"
+      "3 nothing is replayed there, or it does not answer.");
+  const auto addSub = [&](const char* name, const char* help) {
+    CLI::App* sub = addCellCommand(*command, arguments->target, name, help);
+    sub->add_option("--run", arguments->run, "its run, where several go on in a cell");
+    return sub;
+  };
+  const auto add = [&](const char* name, const char* help, msg::ReplayAction action) {
+    CLI::App* sub = addSub(name, help);
+    sub->callback([=, &exit_code] {
+      arguments->request.action(action);
+      ask(*arguments, exit_code);
+    });
+    return sub;
+  };
+  addSub("status", "where it stands")->callback([=] { tell(*arguments); });
+  add("pause", "hold it in front of its next message", msg::REPLAY_PAUSE);
+  add("resume", "go on, with what was left of the wait for that message", msg::REPLAY_RESUME);
+  add("stop", "end it here, in order", msg::REPLAY_STOP);
+  CLI::App* step = add("step", "send N messages as fast as possible, then hold", msg::REPLAY_STEP);
+  arguments->request.messages(1);
+  step->add_option_function<std::uint64_t>(
+          "n", [=](const std::uint64_t& n) { arguments->request.messages(n); }, "how many")
+      ->default_str("1");
+  step->add_option_function<std::string>(
+      "--topic", [=](const std::string& topic) { arguments->request.topic(topic); },
+      "N messages of this topic, as it was recorded, and all that lie before them: plant_state steps the loop");
+  add("seek", "stand there, in s from the recording's first message; goes on or holds as before", msg::REPLAY_SEEK)
+      ->add_option_function<double>(
+          "position",
+          [=](const double& position_s) {
+            if (!(std::abs(position_s) < 1e9)) throw UsageError("player seek: expected a time in seconds");
+            arguments->request.position_ns(std::llround(position_s * 1e9));
+          },
+          "S")
+      ->required();
+  add("rate", "recorded seconds per second, or max", msg::REPLAY_RATE)
+      ->add_option_function<std::string>(
+          "rate", [=](const std::string& text) { arguments->request.rate(parseRate("player rate", text)); }, "X or max")
+      ->required();
+}
+
+}  // namespace baton
