@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
@@ -11,7 +12,7 @@ namespace baton {
 /// "[######..................]" for a part from 0 to 1.
 [[nodiscard]] inline std::string progressBar(double part) {
   constexpr int kWidth = 24;
-  const int filled = static_cast<int>(part * kWidth);
+  const int filled = static_cast<int>(std::clamp(part, 0.0, 1.0) * kWidth);
   return "[" + std::string(static_cast<std::size_t>(filled), '#') +
          std::string(static_cast<std::size_t>(kWidth - filled), '.') + "]";
 }

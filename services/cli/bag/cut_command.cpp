@@ -13,8 +13,8 @@
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
 #include "control/nearest_name.hpp"
-#include "progress_line.hpp"
 #include "runtime/json.hpp"
+#include "runtime/progress_line.hpp"
 
 namespace baton {
 namespace {

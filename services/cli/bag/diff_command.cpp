@@ -8,8 +8,8 @@
 
 #include "bag/recording_diff.hpp"
 #include "bag/subcommands.hpp"
-#include "progress_line.hpp"
 #include "runtime/json.hpp"
+#include "runtime/progress_line.hpp"
 
 namespace baton {
 namespace {

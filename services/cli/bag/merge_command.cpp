@@ -13,9 +13,9 @@
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
 #include "dds/hash.hpp"
-#include "progress_line.hpp"
 #include "report/recording.hpp"
 #include "runtime/json.hpp"
+#include "runtime/progress_line.hpp"
 
 namespace baton {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "bag/copy_target.hpp"
 #include "bag/subcommands.hpp"
-#include "progress_line.hpp"
 #include "runtime/json.hpp"
+#include "runtime/progress_line.hpp"
 
 namespace baton {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "base/error.hpp"
 #include "mcap/reader.hpp"
-#include "progress_line.hpp"
+#include "runtime/progress_line.hpp"
 
 namespace baton {
 

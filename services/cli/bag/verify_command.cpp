@@ -7,8 +7,8 @@
 
 #include "bag/subcommands.hpp"
 #include "bag/verify.hpp"
-#include "progress_line.hpp"
 #include "runtime/json.hpp"
+#include "runtime/progress_line.hpp"
 
 namespace baton {
 namespace {

@@ -1,0 +1,353 @@
+// A replay that is controlled from elsewhere, by keys, and by who listens. It plays numbers, so that whatever arrives
+// says where in the recording it comes from.
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <mutex>
+#include <numeric>
+
+#include "dds/endpoint.hpp"
+#include "mcap/writer.hpp"
+#include "support/processes.hpp"
+
+namespace baton::test {
+namespace {
+
+constexpr std::uint64_t kStart_ns = 1'700'000'000'000'000'000;
+constexpr std::uint64_t kMs = 1'000'000;
+
+using Numbers = std::vector<std::uint32_t>;
+
+Numbers range(std::uint32_t begin, std::uint32_t end) {
+  Numbers numbers(end - begin);
+  std::iota(numbers.begin(), numbers.end(), begin);
+  return numbers;
+}
+
+mcap::Bytes payloadOf(std::uint32_t number) {
+  mcap::Bytes payload{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
+  payload.resize(8);
+  std::memcpy(payload.data() + 4, &number, sizeof number);
+  return payload;
+}
+
+/// 0, 1, 2, ... on the topic "numbers", `spacing_ns` apart; behind every tenth one message more on "tens".
+std::string writeNumbers(const Bench& bench, std::uint32_t count, std::uint64_t spacing_ns = kMs) {
+  const std::string file = (bench.folder() / "numbers.mcap").string();
+  mcap::WriterOptions options;
+  options.chunk_bytes = 4096;  // a seek has many to choose from
+  mcap::Writer writer(file, options);
+  const mcap::SchemaId schema = writer.addSchema("baton::test::Number", "omgidl", {});
+  const mcap::StringMap metadata{{"qos", "reliability: reliable\ndurability: volatile\n"}};
+  const mcap::ChannelId numbers = writer.addChannel("numbers", "cdr", schema, metadata);
+  const mcap::ChannelId tens = writer.addChannel("tens", "cdr", schema, metadata);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint64_t time_ns = kStart_ns + i * spacing_ns;
+    writer.write(numbers, i + 1, time_ns, time_ns - 100, payloadOf(i));
+    if (i % 10 == 9) writer.write(tens, i / 10 + 1, time_ns, time_ns - 50, payloadOf(i));
+  }
+  writer.close();
+  return file;
+}
+
+/// Hears one topic of the replay.
+class Listener {
+ public:
+  Listener(const Bench& bench, const std::string& service, const std::string& partition = "replay/test",
+           const std::string& topic = "numbers")
+      : participant_(
+            {.domain = bench.domain(), .partition = partition, .cell = "replay", .run = "test", .service = service}),
+        reader_(participant_, {.topic = topic, .type = "baton::test::Number"}, [this](const dds::RawSample& sample) {
+          std::uint32_t number = 0;
+          std::memcpy(&number, sample.payload.data() + 4, sizeof number);
+          const std::lock_guard lock(mutex_);
+          numbers_.push_back(number);
+          source_ns_.push_back(sample.source_timestamp_ns);
+        }) {}
+  [[nodiscard]] Numbers numbers() const {
+    const std::lock_guard lock(mutex_);
+    return numbers_;
+  }
+  [[nodiscard]] std::vector<std::int64_t> sourceTimes() const {
+    const std::lock_guard lock(mutex_);
+    return source_ns_;
+  }
+  [[nodiscard]] bool hears(const Numbers& expected) const {
+    return eventually([&] { return numbers().size() >= expected.size(); }) && numbers() == expected;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  Numbers numbers_;
+  std::vector<std::int64_t> source_ns_;
+  dds::Participant participant_;
+  dds::RawReader reader_;
+};
+
+class ReplayControl : public testing::Test {
+ protected:
+  void start(std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--run", "test", "--domain", std::to_string(bench_.domain()), "--json"});
+    pid_ = bench_.start("baton-replayer", arguments, "replay.log");
+  }
+  /// Says something to the replay, which must be done, and returns the answer.
+  nlohmann::json player(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "player");
+    arguments.emplace_back("--json");
+    const Finished finished = bench_.baton(arguments);
+    EXPECT_EQ(finished.exit_code, 0) << arguments.at(1) << ": " << finished.out << finished.err;
+    return nlohmann::json::parse(finished.out);
+  }
+  [[nodiscard]] bool stands(const std::string& state) {
+    return eventually([&] { return player({"status"}).at("state") == state; });
+  }
+  Bench bench_;
+  int pid_ = 0;
+};
+
+TEST_F(ReplayControl, StepsExactlySoManyAndAPauseHolds) {
+  Listener listener(bench_, "listener");
+  start({writeNumbers(bench_, 60'000), "--paused", "--wait-for-readers", "listener"});
+  ASSERT_TRUE(stands("paused"));
+  EXPECT_EQ(player({"step"}).at("messages"), 1);
+  EXPECT_EQ(player({"step", "5"}).at("messages"), 6);
+  EXPECT_TRUE(listener.hears(range(0, 6)));
+  // Two messages on "tens": behind 9 and behind 19.
+  EXPECT_EQ(player({"step", "2", "--topic", "tens"}).at("messages"), 22);
+  EXPECT_TRUE(listener.hears(range(0, 20)));
+
+  player({"resume"});
+  ASSERT_TRUE(eventually([&] { return listener.numbers().size() > 100; }));
+  const nlohmann::json paused = player({"pause"});
+  const auto messages = paused.at("messages").get<std::uint32_t>();
+  const std::uint32_t numbers = messages - messages / 11;  // each ten of them has one more message behind it
+  EXPECT_TRUE(listener.hears(range(0, numbers)));
+  for (int i = 0; i < 3; ++i) {
+    const nlohmann::json status = player({"status"});
+    EXPECT_EQ(status.at("state"), "paused");
+    EXPECT_EQ(status.at("messages"), messages);
+    EXPECT_EQ(status.at("position_s"), paused.at("position_s"));
+  }
+  EXPECT_EQ(listener.numbers().size(), numbers);
+
+  player({"stop"});
+  EXPECT_EQ(bench_.wait(pid_), 0);
+  EXPECT_EQ(listener.numbers().size(), numbers);
+}
+
+TEST_F(ReplayControl, SeeksWhereItIsToldBothWays) {
+  Listener listener(bench_, "listener");
+  start({writeNumbers(bench_, 20'000), "--paused", "--wait-for-readers", "listener", "--from", "1"});
+  ASSERT_TRUE(stands("paused"));
+  EXPECT_DOUBLE_EQ(player({"seek", "15.5"}).at("position_s").get<double>(), 15.5);
+  player({"step", "2"});
+  player({"seek", "1.25"});
+  player({"step"});
+  player({"seek", "3.0001"});  // between two messages: the next one
+  player({"step"});
+  EXPECT_TRUE(listener.hears({15'500, 15'501, 1250, 3001}));
+
+  const Finished beyond = bench_.baton({"player", "seek", "0.5"});  // in front of --from
+  EXPECT_EQ(beyond.exit_code, 1) << beyond.out << beyond.err;
+  EXPECT_NE(beyond.out.find("expected 1 to 19.999 s, found 0.5"), std::string::npos) << beyond.out;
+
+  // At the end it stays, and a step that finds too little says so.
+  player({"seek", "19.998"});
+  const Finished cut = bench_.baton({"player", "step", "100"});
+  EXPECT_EQ(cut.exit_code, 1) << cut.out << cut.err;
+  EXPECT_NE(cut.out.find("3 of 100 were sent"), std::string::npos) << cut.out;
+  EXPECT_EQ(player({"status"}).at("state"), "paused");
+  player({"resume"});
+  EXPECT_EQ(bench_.wait(pid_), 0);
+  EXPECT_TRUE(listener.hears({15'500, 15'501, 1250, 3001, 19'998, 19'999}));
+}
+
+TEST_F(ReplayControl, AChangeOfRateTakesEffect) {
+  Listener listener(bench_, "listener");
+  // An hour between two messages: nothing ends unless the rate is obeyed.
+  start({writeNumbers(bench_, 20, 3'600'000 * kMs), "--wait-for-readers", "listener"});
+  ASSERT_TRUE(listener.hears({0}));
+  player({"rate", "1e8"});
+  EXPECT_TRUE(listener.hears(range(0, 20)));
+  EXPECT_EQ(bench_.wait(pid_), 0);
+}
+
+TEST_F(ReplayControl, ARateOfMaxWaitsForNoTime) {
+  Listener listener(bench_, "listener");
+  start({writeNumbers(bench_, 20, 3'600'000 * kMs), "--wait-for-readers", "listener"});
+  ASSERT_TRUE(listener.hears({0}));
+  player({"rate", "max"});
+  EXPECT_TRUE(listener.hears(range(0, 20)));
+  EXPECT_EQ(bench_.wait(pid_), 0);
+}
+
+TEST_F(ReplayControl, ALoopRepeatsBytesAndSourceTimes) {
+  Listener listener(bench_, "listener");
+  const std::string file = writeNumbers(bench_, 300);
+  const nlohmann::json result = bench_.batonJson(
+      {"replay", file, "--loop", "3", "--rate", "max", "--wait-for-readers", "listener", "--run", "test", "--json"});
+  EXPECT_EQ(result.at("passes"), 3);
+  EXPECT_EQ(result.at("messages"), 990);
+  EXPECT_EQ(result.at("total"), 330);
+  Numbers expected;
+  std::vector<std::int64_t> expected_ns;
+  for (int pass = 0; pass < 3; ++pass) {
+    for (std::uint32_t i = 0; i < 300; ++i) {
+      expected.push_back(i);
+      expected_ns.push_back(static_cast<std::int64_t>(kStart_ns + i * kMs - 100));
+    }
+  }
+  EXPECT_TRUE(listener.hears(expected));
+  const std::vector<std::int64_t> times_ns = listener.sourceTimes();
+  ASSERT_EQ(times_ns.size(), expected_ns.size());
+  for (std::size_t i = 0; i < times_ns.size(); ++i) {
+    ASSERT_NEAR(static_cast<double>(times_ns[i] - expected_ns[i]), 0.0, 1.0) << i;  // RTPS counts 2^-32 s
+  }
+}
+
+TEST_F(ReplayControl, WaitsForReadersByTheirNames) {
+  start({writeNumbers(bench_, 50), "--wait-for-readers", "watcher,listener", "--rate", "max"});
+  Listener listener(bench_, "listener");
+  ASSERT_TRUE(eventually([&] { return player({"status"}).at("waiting_for") == "watcher to read a topic"; }));
+  const Finished step = bench_.baton({"player", "step"});
+  EXPECT_EQ(step.exit_code, 1) << step.out;
+  EXPECT_NE(step.out.find("it waits for watcher"), std::string::npos) << step.out;
+  EXPECT_TRUE(listener.numbers().empty());
+  Listener watcher(bench_, "watcher", "replay/test", "tens");
+  EXPECT_TRUE(listener.hears(range(0, 50)));
+  EXPECT_TRUE(watcher.hears({9, 19, 29, 39, 49}));
+  EXPECT_EQ(bench_.wait(pid_), 0);
+}
+
+TEST_F(ReplayControl, IsHeardInAnotherPartitionAsWell) {
+  Listener anywhere(bench_, "anywhere", "");
+  Listener listener(bench_, "listener");
+  Listener stranger(bench_, "stranger", "elsewhere");
+  const Finished replay = bench_.baton({"replay", writeNumbers(bench_, 50), "--partition", "", "--rate", "max",
+                                        "--wait-for-readers", "anywhere,listener", "--run", "test"});
+  EXPECT_EQ(replay.exit_code, 0) << replay.err;
+  EXPECT_TRUE(anywhere.hears(range(0, 50)));
+  EXPECT_TRUE(listener.hears(range(0, 50)));
+  EXPECT_TRUE(stranger.numbers().empty());
+}
+
+TEST_F(ReplayControl, AReplayThatIsGoneIsAClearError) {
+  const auto expectNobody = [&] {
+    const Finished finished = bench_.baton({"player", "pause"});
+    EXPECT_EQ(finished.exit_code, 3) << finished.out << finished.err;
+    EXPECT_NE(finished.err.find("nothing is replayed in cell replay of domain"), std::string::npos) << finished.err;
+  };
+  start({writeNumbers(bench_, 50), "--paused"});
+  ASSERT_TRUE(stands("paused"));
+  kill(pid_, SIGKILL);
+  EXPECT_EQ(bench_.wait(pid_), 128 + SIGKILL);
+  expectNobody();
+}
+
+TEST_F(ReplayControl, OfTwoReplaysOneMustBeNamed) {
+  const std::string file = writeNumbers(bench_, 50);
+  start({file, "--paused"});
+  ASSERT_TRUE(stands("paused"));
+  const int other = bench_.start(
+      "baton-replayer", {file, "--paused", "--run", "other", "--domain", std::to_string(bench_.domain())}, "other.log");
+  ASSERT_TRUE(eventually([&] { return bench_.baton({"player", "status", "--run", "other"}).exit_code == 0; }));
+  ASSERT_TRUE(eventually([&] { return bench_.baton({"player", "status"}).exit_code == 2; }));
+  player({"stop", "--run", "other"});
+  EXPECT_EQ(bench_.wait(other), 0);
+  EXPECT_TRUE(stands("paused")) << "the first one goes on";
+}
+
+TEST_F(ReplayControl, AMessageLaterThanAllowedIsAFailure) {
+  const std::string file = writeNumbers(bench_, 50);
+  const Finished late = bench_.baton({"replay", file, "--max-late-us", "0", "--overdue-us", "0", "--json"});
+  EXPECT_EQ(late.exit_code, 1) << late.out << late.err;  // nothing is sent in no time
+  EXPECT_EQ(nlohmann::json::parse(late.out).at("overdue"), 55);
+  EXPECT_EQ(bench_.baton({"replay", file, "--max-late-us", "1e9"}).exit_code, 0);
+}
+
+/// A process with a terminal of its own.
+class OnTerminal {
+ public:
+  explicit OnTerminal(const Bench& bench, std::vector<std::string> arguments) {
+    const std::string program = (programFolder() / "baton-replayer").string();
+    arguments.insert(arguments.begin(), program);
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    const std::string home = bench.folder().string();
+    pid_ = forkpty(&terminal_, nullptr, nullptr, nullptr);
+    if (pid_ == 0) {
+      setenv("BATON_HOME", home.c_str(), 1);
+      execv(program.c_str(), argv.data());
+      _exit(127);
+    }
+  }
+  ~OnTerminal() {
+    if (pid_ > 0) kill(pid_, SIGKILL);
+    close(terminal_);
+  }
+  OnTerminal(const OnTerminal&) = delete;
+  OnTerminal& operator=(const OnTerminal&) = delete;
+
+  void strike(const std::string& keys) const {
+    ASSERT_EQ(write(terminal_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
+  }
+  /// Whether lines are edited and echoed, as a shell wants them.
+  [[nodiscard]] bool isAsFound() const {
+    termios attributes{};
+    tcgetattr(terminal_, &attributes);
+    return (attributes.c_lflag & ICANON) != 0 && (attributes.c_lflag & ECHO) != 0;
+  }
+  int exitCode() {
+    int how = 0;
+    EXPECT_TRUE(eventually([&] { return waitpid(pid_, &how, WNOHANG) == pid_; }));
+    pid_ = 0;
+    return WIFEXITED(how) ? WEXITSTATUS(how) : 128 + WTERMSIG(how);
+  }
+
+ private:
+  int terminal_ = -1;
+  pid_t pid_ = 0;
+};
+
+TEST_F(ReplayControl, ObeysKeysAndGivesTheTerminalBack) {
+  Listener listener(bench_, "listener");
+  const std::vector<std::string> arguments{
+      writeNumbers(bench_, 60'000),   "--paused", "--wait-for-readers", "listener", "--run", "test", "--domain",
+      std::to_string(bench_.domain())};
+  {
+    OnTerminal replay(bench_, arguments);
+    ASSERT_TRUE(eventually([&] { return !replay.isAsFound(); }));
+    ASSERT_TRUE(stands("paused"));
+    replay.strike("\033[C\033[C");
+    EXPECT_TRUE(listener.hears({0, 1}));
+    replay.strike("+");
+    EXPECT_TRUE(eventually([&] { return player({"status"}).at("rate") == 2.0; }));
+    replay.strike(" ");
+    EXPECT_TRUE(eventually([&] { return listener.numbers().size() > 100; }));
+    replay.strike(" ");
+    EXPECT_TRUE(stands("paused"));
+    const double before_s = player({"status"}).at("position_s");
+    replay.strike("\033[D");
+    EXPECT_TRUE(eventually([&] {
+      return std::abs(player({"status"}).at("position_s").get<double>() - std::max(0.0, before_s - 1.0)) < 1e-6;
+    }));
+    replay.strike("q");
+    EXPECT_EQ(replay.exitCode(), 0);
+    EXPECT_TRUE(replay.isAsFound());
+  }
+  OnTerminal replay(bench_, arguments);
+  ASSERT_TRUE(eventually([&] { return !replay.isAsFound(); }));
+  replay.strike("\003");  // Ctrl-C
+  EXPECT_EQ(replay.exitCode(), 130);
+  EXPECT_TRUE(replay.isAsFound());
+}
+
+}  // namespace
+}  // namespace baton::test
