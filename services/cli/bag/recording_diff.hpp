@@ -21,11 +21,11 @@
 namespace baton {
 
 struct DiffRequest {
-  std::string a;
-  std::string b;
-  std::vector<std::string> topics;      // empty: those of the control loop; without any, all but *_status
-  std::vector<std::string> ignored;     // as RuleSet
-  std::vector<std::string> tolerances;  // as RuleSet
+  std::string a{};
+  std::string b{};
+  std::vector<std::string> topics{};      // empty: those of the control loop; without any, all but *_status
+  std::vector<std::string> ignored{};     // as RuleSet
+  std::vector<std::string> tolerances{};  // as RuleSet
 };
 
 /// Where a sample stands among those of its stream.

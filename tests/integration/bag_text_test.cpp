@@ -1,0 +1,251 @@
+// `baton bag cat`, `export` and `diff` as a person runs them, on small files and on a run's recording.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "support/processes.hpp"
+#include "support/short_contact.hpp"
+#include "support/small_recording.hpp"
+
+namespace baton::test {
+namespace {
+
+std::vector<std::string> linesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string contentOf(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Five samples of "plain", a millisecond apart, and after each one of "opaque", which has no schema.
+std::string smallFile(const Bench& bench, const std::string& name = "small.mcap", double last = 4.0) {
+  const std::string path = (bench.folder() / name).string();
+  SmallRecording recording(path);
+  for (int i = 0; i < 5; ++i) {
+    recording.addBytes("plain", "maker", "Sample", "struct Sample { long n; @unit(\"m\") sequence<double> x; };",
+                       Bytes().number(i).number(std::uint32_t{1}).number(i == 4 ? last : i).bytes);
+    recording.addBytes("opaque", "maker", "Other", "", Bytes().number(std::uint8_t{0xAB}).bytes);
+  }
+  recording.close();
+  return path;
+}
+
+TEST(BagCat, PrintsMessagesOrBytes) {
+  const Bench bench;
+  const std::string file = smallFile(bench);
+  const Finished cat = bench.baton({"bag", "cat", file});
+  ASSERT_EQ(cat.exit_code, 0) << cat.err;
+  const std::vector<std::string> lines = linesOf(cat.out);
+  ASSERT_EQ(lines.size(), 10U);
+  const nlohmann::json plain = nlohmann::json::parse(lines[2]);
+  EXPECT_EQ(plain.at("topic"), "plain");
+  EXPECT_EQ(plain.at("service"), "maker");
+  EXPECT_EQ(plain.at("sequence"), 2);
+  EXPECT_EQ(plain.at("message"), nlohmann::json::parse(R"({"n":1,"x":[1.0]})"));
+  const nlohmann::json opaque = nlohmann::json::parse(lines[3]);
+  EXPECT_EQ(opaque.at("type"), "Other");
+  EXPECT_EQ(opaque.at("data"), "00010000ab");
+}
+
+TEST(BagCat, TakesTopicsTimesAndALimit) {
+  const Bench bench;
+  const std::string file = smallFile(bench);
+  const auto count = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {"bag", "cat", file});
+    const Finished cat = bench.baton(options);
+    EXPECT_EQ(cat.exit_code, 0) << cat.err;
+    return linesOf(cat.out).size();
+  };
+  EXPECT_EQ(count({"--topics", "plain"}), 5U);
+  EXPECT_EQ(count({"--topics", "plain,opaque"}), 10U);
+  EXPECT_EQ(count({"--from", "0.002"}), 8U);
+  EXPECT_EQ(count({"--from", "0.002", "--to", "0.004"}), 3U);
+  EXPECT_EQ(count({"--limit", "3"}), 3U);
+  const Finished raw = bench.baton({"bag", "cat", file, "--raw", "--topics", "plain", "--limit", "1"});
+  EXPECT_TRUE(nlohmann::json::parse(raw.out).contains("data")) << raw.out;
+  EXPECT_EQ(bench.baton({"bag", "cat", file, "--topics", "plan"}).exit_code, 2);
+  EXPECT_EQ(bench.baton({"bag", "cat", file, "--from", "2", "--to", "1"}).exit_code, 2);
+  EXPECT_EQ(bench.baton({"bag", "cat", file, "--limit", "0"}).exit_code, 2);
+  EXPECT_EQ(bench.baton({"bag", "cat", bench.write("no.mcap", "nothing")}).exit_code, 2);
+  EXPECT_EQ(bench.baton({"bag", "cat", (bench.folder() / "none.mcap").string()}).exit_code, 3);
+}
+
+TEST(BagCat, AReaderThatHasHadEnoughIsNoError) {
+  const Bench bench;
+  const std::string file = smallFile(bench);
+  const Finished head = runProgram(
+      "/bin/sh", {"-c", "('" + (programFolder() / "baton").string() + "' bag cat '" + file + "'; echo $? >&2) | :"},
+      bench.folder());
+  EXPECT_EQ(head.err, "0\n");
+}
+
+TEST(BagCat, PrintsWhatIsLeftOfADamagedOrCutFileAndSaysSo) {
+  const Bench bench;
+  const std::string file = (bench.folder() / "odd.mcap").string();
+  SmallRecording recording(file);
+  const char* idl = "struct Sample { long a; long b; };";
+  recording.addBytes("t", "s", "Sample", idl, Bytes().number(1).number(2).bytes);
+  recording.addBytes("t", "s", "Sample", idl, Bytes().number(1).bytes);
+  recording.addBytes("u", "s", "Odd", "@mutable struct Odd { long a; };", Bytes().number(1).bytes);
+  recording.close();
+  const Finished cat = bench.baton({"bag", "cat", file});
+  EXPECT_EQ(cat.exit_code, 1);
+  ASSERT_EQ(linesOf(cat.out).size(), 3U);
+  EXPECT_EQ(nlohmann::json::parse(linesOf(cat.out)[1]).at("error"), "b: expected 4 bytes, found 0");
+  EXPECT_NE(cat.err.find("line 1: expected an annotation that changes nothing"), std::string::npos) << cat.err;
+
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 20);
+  const Finished cut = bench.baton({"bag", "cat", file, "--topics", "u"});
+  EXPECT_EQ(cut.exit_code, 1);
+  EXPECT_EQ(linesOf(cut.out).size(), 1U);
+  EXPECT_NE(cut.err.find("cut"), std::string::npos) << cut.err;
+}
+
+TEST(BagExport, WritesATableForEachTopicAndNothingOverAnother) {
+  const Bench bench;
+  const std::string file = smallFile(bench);
+  const std::string out = (bench.folder() / "tables").string();
+  const Finished first = bench.baton({"bag", "export", file, "--csv", "--out", out});
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const std::string table = contentOf(out + "/plain.csv");
+  EXPECT_TRUE(
+      table.starts_with("service,writer,sequence,log_time_ns,publish_time_ns,n,x[0] [m]\r\n"
+                        "maker,of maker,1,1001000000,1001000000,0,0.0\r\n"))
+      << table;
+  EXPECT_EQ(std::ranges::count(table, '\n'), 6);
+  EXPECT_TRUE(contentOf(out + "/opaque.csv")
+                  .starts_with("service,writer,sequence,log_time_ns,publish_time_ns,data\r\n"
+                               "maker,of maker,1,1002000000,1002000000,00010000ab\r\n"));
+
+  std::ofstream(out + "/plain.csv") << "mine";
+  const Finished again = bench.baton({"bag", "export", file, "--csv", "--out", out});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_NE(again.err.find("--overwrite"), std::string::npos) << again.err;
+  EXPECT_EQ(contentOf(out + "/plain.csv"), "mine");
+  ASSERT_EQ(bench.baton({"bag", "export", file, "--csv", "--out", out, "--overwrite"}).exit_code, 0);
+  EXPECT_EQ(contentOf(out + "/plain.csv"), table);
+  for (const auto& entry : std::filesystem::directory_iterator(out)) EXPECT_EQ(entry.path().extension(), ".csv");
+}
+
+TEST(BagExport, WritesJsonLinesAsCatPrintsThem) {
+  const Bench bench;
+  const std::string file = smallFile(bench);
+  const std::string out = (bench.folder() / "lines").string();
+  ASSERT_EQ(bench.baton({"bag", "export", file, "--json", "--topics", "plain", "--out", out}).exit_code, 0);
+  EXPECT_EQ(contentOf(out + "/plain.jsonl"), bench.baton({"bag", "cat", file, "--topics", "plain"}).out);
+  EXPECT_FALSE(std::filesystem::exists(out + "/opaque.jsonl"));
+  EXPECT_EQ(bench.baton({"bag", "export", file, "--json", "--csv", "--out", out}).exit_code, 2);
+  EXPECT_EQ(bench.baton({"bag", "export", file, "--out", out}).exit_code, 2);
+}
+
+TEST(BagExport, TopicsCannotNameFilesElsewhere) {
+  const Bench bench;
+  const std::string file = (bench.folder() / "odd.mcap").string();
+  SmallRecording recording(file);
+  for (const char* topic : {"../up", "/abs", "rt/a", "rt_a", ".hidden", ""}) {
+    recording.addBytes(topic, "s", "T", "", Bytes().bytes);
+  }
+  recording.close();
+  const std::string out = (bench.folder() / "out").string();
+  ASSERT_EQ(bench.baton({"bag", "export", file, "--csv", "--out", out}).exit_code, 0);
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(out)) names.push_back(entry.path().filename());
+  std::ranges::sort(names);
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"_.._up.csv", "_.csv", "_.hidden.csv", "_abs.csv", "rt_a-2.csv", "rt_a.csv"}));
+}
+
+TEST(BagDiff, ExitCodesSayWhatItFound) {
+  const Bench bench;
+  const std::string a = smallFile(bench, "a.mcap"), b = smallFile(bench, "b.mcap"), c = smallFile(bench, "c.mcap", 4.5);
+  const Finished same = bench.baton({"bag", "diff", a, b});
+  EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+  const Finished other = bench.baton({"bag", "diff", a, c});
+  EXPECT_EQ(other.exit_code, 1) << other.err;
+  EXPECT_NE(other.out.find("plain of maker, message 5, x[0]: 4.0 | 4.5"), std::string::npos) << other.out;
+  EXPECT_EQ(bench.baton({"bag", "diff", a, c, "--tolerance", "x=0.5"}).exit_code, 0);
+  EXPECT_EQ(bench.baton({"bag", "diff", a, c, "--ignore", "plain.x", "opaque"}).exit_code, 0);
+  EXPECT_EQ(bench.baton({"bag", "diff", a, c, "--topics", "opaque"}).exit_code, 0);
+  EXPECT_EQ(bench.baton({"bag", "diff", a, c, "--ignore", "plain.y"}).exit_code, 2);
+  EXPECT_EQ(bench.baton({"bag", "diff", a, bench.write("no.mcap", "nothing")}).exit_code, 2);
+  EXPECT_EQ(bench.baton({"bag", "diff", a, (bench.folder() / "none.mcap").string()}).exit_code, 3);
+  const nlohmann::json json = bench.batonJson({"bag", "diff", a, c, "--json"});
+  EXPECT_EQ(json.at("same"), false);
+  EXPECT_EQ(json.at("first").at("topic"), "plain");
+  EXPECT_EQ(json.at("streams").at(1).at("first").at("field"), "x[0]");
+}
+
+/// Every message by topic, writer and sequence number, as "<times> <message>".
+std::map<std::string, std::string> messagesOf(const std::string& lines) {
+  std::map<std::string, std::string> messages;
+  for (const std::string& line : linesOf(lines)) {
+    const nlohmann::json json = nlohmann::json::parse(line);
+    const std::string key = json.at("topic").get<std::string>() + " " + json.at("writer").get<std::string>() + " " +
+                            json.at("sequence").dump();
+    messages[key] =
+        json.at("log_time_ns").dump() + " " + json.at("publish_time_ns").dump() + " " + json.at("message").dump();
+  }
+  return messages;
+}
+
+TEST(Bag, ARunsRecordingReadsLikeThroughTheOfficialReaderAndIsTheSameAsAnother) {
+  const Bench bench;
+  const std::string scenario = bench.write("short.yaml", shortContact());
+  const auto record = [&](const std::string& name) {
+    std::string file = (bench.folder() / name).string();
+    EXPECT_EQ(bench.baton({"run", scenario, "--out", file}).exit_code, 0);
+    return file;
+  };
+  const std::string a = record("a.mcap"), b = record("b.mcap");
+
+  // The same values, through another parser and another decoder. Both print numbers that read back exactly.
+  const Finished ours = bench.baton({"bag", "cat", a});
+  ASSERT_EQ(ours.exit_code, 0) << ours.err;
+  const Finished theirs =
+      runProgram("/bin/sh", {"-c", "node '" BATON_TEST_INTEROP "/print_mcap.mjs' '" + a + "'"}, bench.folder());
+  ASSERT_EQ(theirs.exit_code, 0) << theirs.err;
+  const auto our_messages = messagesOf(ours.out), their_messages = messagesOf(theirs.out);
+  ASSERT_GT(our_messages.size(), static_cast<std::size_t>(7 * kShortSteps));
+  ASSERT_EQ(our_messages.size(), their_messages.size());
+  for (const auto& [key, message] : our_messages) ASSERT_EQ(message, their_messages.at(key)) << key;
+
+  const nlohmann::json same = bench.batonJson({"bag", "diff", a, b, "--json"});
+  EXPECT_TRUE(same.at("same")) << same;
+  EXPECT_EQ(same.at("streams").size(), 10U);
+  EXPECT_EQ(bench.baton({"bag", "diff", a, b, "--topics", "service_status"}).exit_code, 1);
+
+  const std::string out = (bench.folder() / "tables").string();
+  ASSERT_EQ(
+      bench.baton({"bag", "export", a, "--csv", "--topics", "plant_state,shadow_command", "--out", out}).exit_code, 0);
+  const std::vector<std::string> states = linesOf(contentOf(out + "/plant_state.csv"));
+  ASSERT_EQ(states.size(), kShortSteps + 2U);
+  EXPECT_NE(states[0].find(",position[2],"), std::string::npos);
+  EXPECT_EQ(states[0].find(",position[3],"), std::string::npos);  // three joints
+  EXPECT_NE(states[0].find(",tip_velocity[1] [m/s],"), std::string::npos);
+  const auto commas = std::ranges::count(states[0], ',');
+  for (const std::string& row : states) ASSERT_EQ(std::ranges::count(row, ','), commas) << row;
+
+  // Another gain at one step is found at the next.
+  std::string changed = shortContact("changes:\n  - {at_s: 0.1, controller: tracking, set: {kp: 60}}\n");
+  const std::string c = (bench.folder() / "c.mcap").string();
+  ASSERT_EQ(bench.baton({"run", bench.write("changed.yaml", changed), "--out", c}).exit_code, 0);
+  const nlohmann::json other = bench.batonJson({"bag", "diff", a, c, "--json"});
+  EXPECT_FALSE(other.at("same"));
+  EXPECT_EQ(other.at("first").at("topic"), "joint_command");
+  for (const auto& stream : other.at("streams")) {
+    if (stream.at("topic") == "joint_command" && stream.at("service") == "tracking") {
+      EXPECT_EQ(stream.at("first").at("step"), 200) << stream;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace baton::test
