@@ -129,6 +129,8 @@ Recovery recover(const std::filesystem::path& in, const std::filesystem::path& o
   result.attachments = attachments.size();
   result.metadata = metadata.size();
   result.lost = losses.list();
+  result.is_whole = result.lost.empty() && result.info.is_complete && result.info.problem.empty() &&
+                    reader.dataCrcMatches().value_or(true);
   return result;
 }
 

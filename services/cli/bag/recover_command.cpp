@@ -27,8 +27,9 @@ std::uint64_t bytesOf(const std::vector<mcap::Damage>& lost) {
 /// What the input was, in a sentence.
 std::string verdictOn(const mcap::Recovery& found) {
   if (!found.lost.empty()) return fmt::format("{} of its bytes could not be read", bytesOf(found.lost));
-  if (found.info.is_complete && found.info.problem.empty()) return "it was whole, and is copied";
-  return "nothing was lost, it has its index again: " + found.info.problem;
+  if (found.is_whole) return "it was whole, and is copied";
+  if (!found.info.problem.empty()) return "nothing was lost, it has its index again: " + found.info.problem;
+  return "nothing was lost; bytes between the messages were changed, as the CRC of its data says";
 }
 
 void printText(const RecoverRequest& request, const mcap::Recovery& found) {
@@ -45,15 +46,9 @@ nlohmann::ordered_json toJson(const RecoverRequest& request, const mcap::Recover
   for (const mcap::Damage& damage : found.lost) {
     lost.push_back({{"from_B", damage.offset}, {"length_B", damage.length}, {"reason", damage.reason}});
   }
-  return {{"file", request.in},
-          {"out", request.out.file},
-          {"whole", found.info.is_complete && found.info.problem.empty() && found.lost.empty()},
-          {"verdict", verdictOn(found)},
-          {"lost_B", bytesOf(found.lost)},
-          {"lost", lost},
-          {"messages", found.messages},
-          {"attachments", found.attachments},
-          {"metadata", found.metadata}};
+  return {{"file", request.in},          {"out", request.out.file},          {"whole", found.is_whole},
+          {"verdict", verdictOn(found)}, {"lost_B", bytesOf(found.lost)},    {"lost", lost},
+          {"messages", found.messages},  {"attachments", found.attachments}, {"metadata", found.metadata}};
 }
 
 ExitCode recover(const RecoverRequest& request) {
