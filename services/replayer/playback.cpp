@@ -69,7 +69,6 @@ Playback::AtEnd Playback::reachEnd() {
     ++pass_;
     return AtEnd::kAgain;
   }
-  steps_left_ = 0;
   return is_playing_ ? AtEnd::kOver : AtEnd::kHold;
 }
 

@@ -126,6 +126,7 @@ bool Replayer::goOnAtEnd() {
       return next_.has_value();  // what can be read of a damaged recording may be nothing
     case Playback::AtEnd::kHold:
       endStep("the recording ends here");
+      playback_.pause(steadyNow());
       reportBefore(kForever_ns);
       sleepUntil(kForever_ns);
       return true;

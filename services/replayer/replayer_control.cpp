@@ -112,7 +112,8 @@ void Replayer::obey(Key key) {
     case Key::kSpace: request.action(playback_.isPlaying() ? msg::REPLAY_PAUSE : msg::REPLAY_RESUME); break;
     case Key::kRight:
       request.action(msg::REPLAY_STEP);
-      request.messages(1);
+      // Of keys struck faster than messages go out, each counts.
+      request.messages(step_ && step_->request_id() == 0 ? playback_.stepsLeft() + 1 : 1);
       if (playback_.isPlaying()) jumpTo(position() + kKeyJump_ns);
       break;
     case Key::kLeft: jumpTo(position() - std::min(position(), kKeyJump_ns)); break;

@@ -165,8 +165,9 @@ TEST(Playback, GoesRoundForEverWhenAskedTo) {
 TEST(Playback, HeldAtItsEndItStaysUntilItIsLetGo) {
   Playback playback = begun();
   playback.step(5, "", kNow);
-  EXPECT_EQ(playback.reachEnd(), Playback::AtEnd::kHold) << "with 5 messages still to come";
-  EXPECT_EQ(playback.stepsLeft(), 0U);
+  EXPECT_EQ(playback.reachEnd(), Playback::AtEnd::kHold);
+  EXPECT_EQ(playback.stepsLeft(), 5U) << "that did not come";
+  playback.pause(kNow);
   EXPECT_EQ(playback.reachEnd(), Playback::AtEnd::kHold);
   playback.seek(at(0), kNow);
   EXPECT_TRUE(playback.due(at(0)).is_held);
