@@ -29,8 +29,7 @@ const Scenario& checked(const Scenario& scenario) {
 MonolithicRun::MonolithicRun(const Scenario& scenario)
     : scenario_(checked(scenario)),
       controller_(scenario_.controller(scenario_.active)),
-      law_info_(findLaw(controller_.law)),
-      schedule_(law_info_, scenario_.robot, controller_.parameters, scenario_.changesOf(controller_.name)),
+      law_(scenario_, controller_, 0),
       arm_(scenario_.robot, scenario_.armConfig()),
       reference_answer_(scenario_),
       effort_(JointVector::Zero(scenario_.robot.size())),
@@ -64,14 +63,14 @@ bool MonolithicRun::step() {
       return fail("a contact is not finite");
     }
     hashes.contact = inputs[2] = hashOf(contact_message_);
-    if (law_info_.uses_force) input_.contact = contact_;
+    if (law_.info().uses_force) input_.contact = contact_;
   }
 
-  schedule_.advance(step_);
-  if (const LawStatus status = schedule_.law().step(input_, effort_); status != LawStatus::kOk) {
+  law_.advance(step_);
+  if (const LawStatus status = law_.compute(step_, {.holds = true}, input_, effort_); status != LawStatus::kOk) {
     return fail(controller_.name + " has no effort to give: " + toString(status));
   }
-  const std::size_t used = law_info_.uses_force ? 3 : 2;
+  const std::size_t used = law_.info().uses_force ? 3 : 2;
   toMessage(stamp, controller_.name, effort_, dds::inputsHash(std::span(inputs).first(used)), command_message_);
   hashes.command = hashOf(command_message_);
 

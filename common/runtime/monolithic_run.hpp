@@ -11,11 +11,10 @@
 #include <vector>
 
 #include "control/arm.hpp"
-#include "control/law.hpp"
-#include "control/parameter_schedule.hpp"
 #include "dds/codec.hpp"
 #include "dds/hash.hpp"
 #include "messages/loop.hpp"
+#include "runtime/running_law.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/step_answers.hpp"
 
@@ -55,8 +54,7 @@ class MonolithicRun {
 
   const Scenario scenario_;
   const ControllerConfig& controller_;
-  const LawInfo& law_info_;
-  ParameterSchedule schedule_;
+  RunningLaw law_;
   Arm arm_;
   ReferenceAnswer reference_answer_;
   std::optional<ContactAnswer> contact_answer_;

@@ -22,8 +22,9 @@ LawRunner::LawRunner(Service& service)
     : service_(service),
       checkpoint_out_(service),
       config_(configOf(service)),
-      info_(findLaw(config_.law)),
-      parameters_(service, config_, info_, checkpoint_out_.firstStep()),
+      law_(service.scenario(), config_, checkpoint_out_.firstStep()),
+      info_(law_.info()),
+      parameters_(service, config_, law_, checkpoint_out_.firstStep()),
       inputs_(info_.uses_force ? 3 : 2),
       effort_(JointVector::Zero(service.scenario().robot.size())),
       command_out_(service, dds::topics::kJointCommand, withRecorder({kPlantName}, service.scenario())),
@@ -35,15 +36,7 @@ LawRunner::LawRunner(Service& service)
   ack_.effort().reserve(kMaxJoints);
   ack_.controller(config_.name);
   owed_.reserve(kMaxOwed);
-  law_state_.resize(msg::MAX_CHECKPOINT);
-  for (const PlannedFailure& failure : service.scenario().failures) {
-    const bool is_restart = failure.controller == config_.name && failure.restarted;
-    // One from before a branch is behind the state that the branch starts from.
-    if (is_restart && *failure.returns_at_step >= checkpoint_out_.firstStep()) {
-      restarts_.push_back(*failure.returns_at_step);
-    }
-  }
-  checkpoint_out_.restore(*this);
+  checkpoint_out_.restore(law_);
   parameters_.publish();
   service.input(dds::topics::kPlantState, {kPlantName},
                 [this](const msg::PlantState& message, const dds::RawSample& sample) { onState(message, sample); });
@@ -107,30 +100,26 @@ void LawRunner::compute(std::uint64_t step) {
   if (const auto last = inputs_.lastDone(); last && step > *last + 1) skipped_ += step - *last - 1;
   inputs_.done(step);
   service_.at(step);
-  if (checkpoints_[slot]) checkpoint_out_.save(step, *this);
-  const bool has_news = parameters_.advance(step);
-  restartAsPlanned(step);
+  if (checkpoints_[slot]) checkpoint_out_.save(step, law_);
+  parameters_.at(step);
+  const bool has_news = law_.advance(step);
   if (!holds && !last_command && !service_.scenario().hot_standby) {
-    active_ = false;
+    law_.skip();
     history_[slot].resize(0);
   } else {
-    // From the second step with the baton on, a law's state goes on by itself; before, it is asked anew at every step
-    // what it would do if it received the baton there. At the start of a run there is nothing to take over.
-    const bool continues = last_command || (holds && (active_ || step == 0));
-    const bool forgets = holds && fresh_step_ == step;
-    evaluate(step, forgets ? Start::kForgets : continues ? Start::kContinues : Start::kTakesOver);
-    active_ = holds;
+    const RunningLaw::Role role{.holds = holds, .commands_once_more = last_command, .forgets = fresh_step_ == step};
+    fill(input_, step);
+    last_status_ = law_.compute(step, role, input_, effort_);
+    if (last_status_ == LawStatus::kOk) {
+      history_[slot] = effort_;
+    } else {
+      history_[slot].resize(0);
+    }
     publish(step, holds || last_command);
   }
   if (has_news) parameters_.publish();
   answerForecasts();
   service_.stepDone(step);
-}
-
-/// This process stands for one that had died and was started again: that one would remember nothing.
-void LawRunner::restartAsPlanned(std::uint64_t step) {
-  for (; next_restart_ < restarts_.size() && restarts_[next_restart_] <= step; ++next_restart_)
-    parameters_.law().reset();
 }
 
 bool LawRunner::isQuiet(std::uint64_t step) const {
@@ -139,46 +128,21 @@ bool LawRunner::isQuiet(std::uint64_t step) const {
 }
 
 void LawRunner::forget() {
+  law_.rewind();
   parameters_.rewind();
   inputs_ = StepInputs(info_.uses_force ? 3 : 2);
-  active_ = failing_ = false;
-  next_restart_ = 0;
+  failing_ = false;
   owed_.clear();
   last_command_step_.reset();
   fresh_step_.reset();
   for (JointVector& effort : history_) effort.resize(0);
 }
 
-void LawRunner::archive(StateArchive& state) {
-  // The state of another law, or of another arm, may have the same length.
-  const auto joints = static_cast<std::uint64_t>(effort_.size());
-  const std::uint64_t own = dds::chainHash(joints, std::as_bytes(std::span(info_.name)));
-  std::uint64_t whose = own;
-  state(whose, active_);
-  if (whose != own) return state.fail();
-  parameters_.archive(state);
-  parameters_.law().archive(state);
-}
-
-LawStatus LawRunner::callLaw(std::uint64_t step, Start start, LawInput& input, JointVector& effort) {
+void LawRunner::fill(LawInput& input, std::uint64_t step) const {
   const std::size_t slot = StepInputs::slot(step);
   input.state = states_[slot];
   input.reference = references_[slot];
   input.contact = contacts_[slot];
-  Law& law = parameters_.law();
-  if (start == Start::kTakesOver) law.handover(input);
-  if (start == Start::kForgets) law.reset();
-  return law.step(input, effort);
-}
-
-void LawRunner::evaluate(std::uint64_t step, Start start) {
-  const std::size_t slot = StepInputs::slot(step);
-  last_status_ = callLaw(step, start, input_, effort_);
-  if (last_status_ == LawStatus::kOk) {
-    history_[slot] = effort_;
-  } else {
-    history_[slot].resize(0);
-  }
 }
 
 void LawRunner::publish(std::uint64_t step, bool commands) {
@@ -245,25 +209,13 @@ void LawRunner::answer(const msg::SwapPlan& plan) {
   // has done nothing: these are tried out.
   JointVector effort = history_[StepInputs::slot(step)];
   LawStatus status = LawStatus::kOk;
-  if (plan.hard()) {
-    status = tryOut(step, Start::kForgets, effort);
-  } else if (effort.size() == 0) {
-    status = tryOut(step, Start::kTakesOver, effort);
+  if (plan.hard() || effort.size() == 0) {
+    LawInput input = input_;
+    fill(input, step);
+    effort = effort_;
+    status = law_.tryOut(plan.hard(), input, effort);
   }
   acknowledge(plan, status == LawStatus::kOk, effort, status == LawStatus::kOk ? "" : toString(status));
-}
-
-/// What the law would give at a step, without a trace.
-LawStatus LawRunner::tryOut(std::uint64_t step, Start start, JointVector& effort) {
-  Law& law = parameters_.law();
-  StateArchive saved = StateArchive::into(law_state_);
-  law.archive(saved);
-  LawInput input = input_;
-  effort = effort_;
-  const LawStatus status = callLaw(step, start, input, effort);
-  StateArchive back = StateArchive::from(std::span(law_state_).first(saved.size()));
-  law.archive(back);
-  return status;
 }
 
 void LawRunner::acknowledge(const msg::SwapPlan& plan, bool ready, const JointVector& effort, const char* reason) {
@@ -285,10 +237,10 @@ void LawRunner::publishStatus() {
   status.law(config_.law);
   status.uses_force(info_.uses_force);
   status.step(inputs_.lastDone().value_or(0));
-  const bool is_cold = !active_ && !service_.scenario().hot_standby;  // it has computed nothing at that step
+  const bool is_cold = !law_.isActive() && !service_.scenario().hot_standby;  // it has computed nothing at that step
   if (!inputs_.lastDone()) {
     status.state(msg::CONTROLLER_STARTING);
-  } else if (active_) {
+  } else if (law_.isActive()) {
     status.state(failing_ ? msg::CONTROLLER_FAILED : msg::CONTROLLER_ACTIVE);
   } else if (is_cold) {
     status.state(msg::CONTROLLER_COLD);

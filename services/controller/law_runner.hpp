@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "control/law.hpp"
 #include "parameter_changes.hpp"
 #include "runtime/checkpoint.hpp"
 #include "runtime/loop_output.hpp"
+#include "runtime/running_law.hpp"
 #include "runtime/service.hpp"
 #include "time/step_inputs.hpp"
 
@@ -20,9 +20,6 @@ namespace baton {
 class LawRunner {
  public:
   explicit LawRunner(Service& service);
-
-  /// What the controller remembers from step to step.
-  void archive(StateArchive& state);
 
  private:
   enum Input : std::size_t { kState, kReference, kContact };
@@ -35,15 +32,11 @@ class LawRunner {
   void onPlan(const msg::SwapPlan& plan);
   void arrived(Input input, std::uint64_t step);
   void compute(std::uint64_t step);
-  void restartAsPlanned(std::uint64_t step);
-  enum class Start { kContinues, kTakesOver, kForgets };  // of a law at a step: see Law
-  [[nodiscard]] LawStatus callLaw(std::uint64_t step, Start start, LawInput& input, JointVector& effort);
-  void evaluate(std::uint64_t step, Start start);
+  void fill(LawInput& input, std::uint64_t step) const;
   void publish(std::uint64_t step, bool commands);
   void answerForecasts();
   void answer(const msg::SwapPlan& plan);
   void acknowledge(const msg::SwapPlan& plan, bool ready, const JointVector& effort, const char* reason);
-  [[nodiscard]] LawStatus tryOut(std::uint64_t step, Start start, JointVector& effort);
   [[nodiscard]] bool isQuiet(std::uint64_t step) const;
   void forget();
   void publishStatus();
@@ -52,8 +45,9 @@ class LawRunner {
   Service& service_;
   Checkpoints checkpoint_out_;
   const ControllerConfig& config_;
+  RunningLaw law_;
   const LawInfo& info_;
-  ParameterChanges parameters_;  // and the law that is made with them
+  ParameterChanges parameters_;
   StepInputs inputs_;
   Window<RobotState> states_;
   Window<bool> holds_{};        // whether PlantState named us
@@ -65,7 +59,6 @@ class LawRunner {
   LawInput input_;
   JointVector effort_;
   LawStatus last_status_ = LawStatus::kOk;
-  bool active_ = false;
   std::uint64_t skipped_ = 0;  // steps whose inputs were not complete in time
   bool failing_ = false;       // the last step gave no effort; reported once
   static constexpr std::size_t kMaxOwed = 64;
@@ -73,8 +66,6 @@ class LawRunner {
   std::optional<std::uint64_t> last_command_step_;  // as outgoing controller: command this step once more
   std::optional<std::uint64_t> fresh_step_;  // as incoming controller of a hard handover: forget everything there
   Window<JointVector> history_;              // efforts of the latest steps
-  std::vector<std::uint64_t> restarts_;      // steps at which the scenario has it return as a new process
-  std::size_t next_restart_ = 0;
 
   LoopOutput<msg::JointCommand> command_out_;
   LoopOutput<msg::JointCommand> shadow_out_;
@@ -82,7 +73,6 @@ class LawRunner {
   dds::Writer<msg::ControllerStatus>& status_out_;
   msg::JointCommand message_;
   msg::SwapAck ack_;
-  std::vector<std::byte> law_state_;  // while a law is tried out
 };
 
 }  // namespace baton

@@ -11,13 +11,13 @@ constexpr const char* kOver = "the run is over";
 
 }  // namespace
 
-ParameterChanges::ParameterChanges(Service& service, const ControllerConfig& config, const LawInfo& info,
+ParameterChanges::ParameterChanges(Service& service, const ControllerConfig& config, RunningLaw& law,
                                    std::uint64_t first_step)
     : service_(service),
       config_(config),
-      info_(info),
+      info_(law.info()),
       first_step_(first_step),
-      schedule_(info, service.scenario().robot, config.parameters, service.scenario().changesOf(config.name)),
+      schedule_(law.parameters()),
       next_step_(first_step),
       status_out_(service.output(dds::topics::kParameterStatus)),
       reply_out_(service.output(dds::topics::kParameterReply, withRecorder({}, service.scenario()))),
@@ -29,18 +29,12 @@ ParameterChanges::ParameterChanges(Service& service, const ControllerConfig& con
                 });
 }
 
-bool ParameterChanges::advance(std::uint64_t step) {
-  next_step_ = step + 1;
-  return schedule_.advance(step);
-}
-
 void ParameterChanges::publish() {
   fill(info_, schedule_.values(), report_);
   status_out_.write(report_);
 }
 
 void ParameterChanges::rewind() {
-  schedule_.rewind();
   next_step_ = first_step_;
   publish();
 }

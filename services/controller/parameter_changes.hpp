@@ -1,5 +1,5 @@
-/// The parameters a controller runs with, and the law that is made with them: what operators ask for, what is in force,
-/// and what others hear of both. Which change takes place at which step is the schedule's business.
+/// The parameters a controller runs with: what operators ask for, what is in force, and what others hear of both. Which
+/// change takes place at which step is the schedule's business.
 ///
 /// Threads. Requests come on DDS's receive thread, under the service's lock. Laws are made on the executor without it,
 /// for that takes longer than a step may wait; then the change is taken in, under the lock again.
@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "control/parameter_schedule.hpp"
+#include "runtime/running_law.hpp"
 #include "runtime/service.hpp"
 
 namespace baton {
@@ -15,17 +15,13 @@ namespace baton {
 class ParameterChanges {
  public:
   /// @param first_step  the step at which the run begins.
-  ParameterChanges(Service& service, const ControllerConfig& config, const LawInfo& info, std::uint64_t first_step);
+  ParameterChanges(Service& service, const ControllerConfig& config, RunningLaw& law, std::uint64_t first_step);
 
-  [[nodiscard]] Law& law() noexcept { return schedule_.law(); }
-
-  /// `step` is about to be computed. True when other values are in force from here on; publish() tells them, for which
-  /// there is time once the step is answered. Both allocate nothing.
-  bool advance(std::uint64_t step);
+  /// `step` is about to be computed.
+  void at(std::uint64_t step) noexcept { next_step_ = step + 1; }
+  /// Tells what is in force.
   void publish();
-
-  /// See ParameterSchedule.
-  void archive(StateArchive& state) { schedule_.archive(state, first_step_); }
+  /// The law is back at the start of the run.
   void rewind();
 
  private:
@@ -38,7 +34,7 @@ class ParameterChanges {
   const ControllerConfig& config_;
   const LawInfo& info_;
   const std::uint64_t first_step_;
-  ParameterSchedule schedule_;
+  ParameterSchedule& schedule_;
   std::uint64_t next_step_;  // the first one that is not computed yet
 
   dds::Writer<msg::ParameterStatus>& status_out_;
