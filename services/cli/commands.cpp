@@ -17,6 +17,7 @@
 #include "rerun_command.hpp"
 #include "run_commands.hpp"
 #include "shadow_command.hpp"
+#include "whatif_command.hpp"
 
 namespace baton {
 
@@ -35,6 +36,7 @@ void addCommands(CLI::App& app, ExitCode& exit_code) {
   addKillsCommand(app, exit_code);
   addMetricsCommand(app);
   addShadowCommand(app);
+  addWhatIfCommand(app);
   addFiguresCommand(app, exit_code);
   addModelCommand(app, exit_code);
   addLawsCommand(app);

@@ -11,6 +11,7 @@
 #include "control/nearest_name.hpp"
 #include "latest_by_name.hpp"
 #include "messages/parameters.hpp"
+#include "parameter_setting.hpp"
 #include "run_commands.hpp"
 #include "runtime/json.hpp"
 #include "runtime/scenario.hpp"
@@ -129,36 +130,14 @@ void get(const Arguments& request) {
   if (request.target.json) std::cout << toText(json) << '\n';
 }
 
-/// Numbers where there are some, else a word; whether the parameter wants them is for the controller to say.
-ParameterValue readValue(const YamlNode& node) {
-  if (node.isList()) {
-    std::vector<double> values;
-    for (const YamlNode& item : node.list(0, 64)) values.push_back(item.number());
-    return values;
-  }
-  try {
-    return std::vector<double>{node.number()};
-  } catch (const UsageError&) {
-    return node.text();
-  }
-}
-
-msg::ParameterValue readSetting(const std::string& setting) {
-  const std::size_t equals = setting.find('=');
-  if (equals == 0 || equals == std::string::npos || equals + 1 == setting.size()) {
-    throw UsageError("expected NAME=VALUE, such as kp=300 or kp=[300, 300, 100], found " + setting);
-  }
-  const std::string name = setting.substr(0, equals);
-  return toMessage(name, readValue(YamlNode::parse(setting, setting.substr(equals + 1))));
-}
-
 void set(const Arguments& request, ExitCode& exit_code) {
   msg::ParameterRequest message;
   for (const std::string& setting : request.settings) {
     if (message.values().size() == msg::MAX_PARAMETERS) {
       throw UsageError("expected at most " + std::to_string(msg::MAX_PARAMETERS) + " values at once");
     }
-    message.values().push_back(readSetting(setting));
+    const auto [name, value] = parseParameter(setting);
+    message.values().push_back(toMessage(name, value));
   }
   CellClient client(CellClient::find(request.target.domain, request.target.cell));
   const std::string controller = meantControllers(client, request.controller).front();

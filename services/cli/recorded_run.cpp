@@ -16,36 +16,7 @@ namespace baton {
 namespace {
 namespace fs = std::filesystem;
 
-std::string needed(const mcap::Reader& reader, const std::string& name, const fs::path& file) {
-  if (auto text = attachmentText(reader, name)) return *text;
-  throw UsageError(file.string() + ": expected the recording of a run, with its " + name + ", found none");
-}
-
 std::string listText(const std::vector<std::string>& entries) { return fmt::format("[{}]", fmt::join(entries, ", ")); }
-
-/// Who failed when, and came back when.
-std::vector<PlannedFailure> failuresOf(const RecordedRun& run) {
-  std::vector<PlannedFailure> failures;
-  for (const msg::Decision& decision : run.decisions) {
-    const std::string controller = decision.controller().c_str();
-    if (decision.cause() == msg::DECISION_FAILED) {
-      PlannedFailure failure{.at_step = {},
-                             .controller = controller,
-                             .commanded = decision.commanded(),
-                             .returns_at_step = {},
-                             .restarted = false};
-      if (decision.at_step() > decision.step()) failure.at_step = decision.step();
-      failures.push_back(failure);
-    } else if (decision.cause() == msg::DECISION_RETURNED) {
-      const auto open = std::find_if(failures.rbegin(), failures.rend(),
-                                     [&](const PlannedFailure& failure) { return failure.controller == controller; });
-      if (open == failures.rend()) continue;
-      open->returns_at_step = decision.step();
-      open->restarted = decision.restarted();
-    }
-  }
-  return failures;
-}
 
 std::string failuresText(const RecordedRun& run) {
   std::vector<std::string> entries;
@@ -107,30 +78,6 @@ bool isPlannedReturn(const msg::Decision& decision, const Scenario& scenario) {
   });
 }
 
-std::vector<std::string> changeEntries(const RecordedRun& run) {
-  std::vector<PlannedChange> changes;
-  std::map<std::string, std::vector<PlannedChange>> asked;  // of the process that now is the controller
-  for (const msg::Decision& decision : run.decisions) {
-    const std::string controller = decision.controller().c_str();
-    if (decision.cause() == msg::DECISION_PARAMETERS) {
-      changes.push_back(
-          {.controller = controller,
-           .change = {.at_step = decision.at_step(), .set = fromMessages(decision.values()), .is_planned = true}});
-      asked[controller].push_back(changes.back());
-    } else if (decision.cause() == msg::DECISION_RETURNED && decision.restarted() &&
-               !isPlannedReturn(decision, run.scenario)) {
-      for (const PlannedChange& one : asked[controller]) {
-        changes.push_back(takenBack(one, decision.step(), run.scenario));
-      }
-      asked[controller].clear();
-    }
-  }
-  std::vector<std::string> entries;
-  entries.reserve(changes.size());
-  for (const PlannedChange& change : changes) entries.push_back(yamlOf(change, run.scenario));
-  return entries;
-}
-
 /// What came to nothing in the very step it was decided in leaves no trace.
 bool cameToNothing(const std::vector<msg::Decision>& decisions, std::size_t index) {
   const msg::Decision& swap = decisions[index];
@@ -185,16 +132,17 @@ RecordedRun readRecordedRun(const fs::path& file) {
   const mcap::Reader reader(file);
   const Take take = lastTake(reader);
   Relaunches relaunches;
-  RecordedRun run{.file = file,
-                  .scenario_text = withLaunches(reader, needed(reader, "scenario.yaml", file), file, relaunches),
-                  .robot_text = needed(reader, "robot.yaml", file),
-                  .checkpoint = attachmentText(reader, "checkpoint.mcap"),
-                  .scenario = {},
-                  .begin_ns = take.begin_ns,
-                  .checkpoints_from_ns = take.begin_ns,
-                  .first_step = 0,
-                  .last_step = 0,
-                  .decisions = {}};
+  RecordedRun run{
+      .file = file,
+      .scenario_text = withLaunches(reader, neededAttachment(reader, "scenario.yaml", file), file, relaunches),
+      .robot_text = neededAttachment(reader, "robot.yaml", file),
+      .checkpoint = attachmentText(reader, "checkpoint.mcap"),
+      .scenario = {},
+      .begin_ns = take.begin_ns,
+      .checkpoints_from_ns = take.begin_ns,
+      .first_step = 0,
+      .last_step = 0,
+      .decisions = {}};
   run.scenario =
       parseScenario(file.string() + "#scenario.yaml", run.scenario_text, file.string() + "#robot.yaml", run.robot_text);
   bool has_states = false;
@@ -218,6 +166,50 @@ RecordedRun readRecordedRun(const fs::path& file) {
     run.checkpoints_from_ns = std::max(run.checkpoints_from_ns, log_time_ns);
   }
   return run;
+}
+
+std::vector<PlannedFailure> failuresOf(const RecordedRun& run) {
+  std::vector<PlannedFailure> failures;
+  for (const msg::Decision& decision : run.decisions) {
+    const std::string controller = decision.controller().c_str();
+    if (decision.cause() == msg::DECISION_FAILED) {
+      PlannedFailure failure{.at_step = {},
+                             .controller = controller,
+                             .commanded = decision.commanded(),
+                             .returns_at_step = {},
+                             .restarted = false};
+      if (decision.at_step() > decision.step()) failure.at_step = decision.step();
+      failures.push_back(failure);
+    } else if (decision.cause() == msg::DECISION_RETURNED) {
+      const auto open = std::find_if(failures.rbegin(), failures.rend(),
+                                     [&](const PlannedFailure& failure) { return failure.controller == controller; });
+      if (open == failures.rend()) continue;
+      open->returns_at_step = decision.step();
+      open->restarted = decision.restarted();
+    }
+  }
+  return failures;
+}
+
+std::vector<PlannedChange> askedChangesOf(const RecordedRun& run) {
+  std::vector<PlannedChange> changes;
+  std::map<std::string, std::vector<PlannedChange>> asked;  // of the process that now is the controller
+  for (const msg::Decision& decision : run.decisions) {
+    const std::string controller = decision.controller().c_str();
+    if (decision.cause() == msg::DECISION_PARAMETERS) {
+      changes.push_back(
+          {.controller = controller,
+           .change = {.at_step = decision.at_step(), .set = fromMessages(decision.values()), .is_planned = true}});
+      asked[controller].push_back(changes.back());
+    } else if (decision.cause() == msg::DECISION_RETURNED && decision.restarted() &&
+               !isPlannedReturn(decision, run.scenario)) {
+      for (const PlannedChange& one : asked[controller]) {
+        changes.push_back(takenBack(one, decision.step(), run.scenario));
+      }
+      asked[controller].clear();
+    }
+  }
+  return changes;
 }
 
 std::vector<PlannedSwap> swapsOf(const RecordedRun& run) {
@@ -275,7 +267,9 @@ std::string repeatingScenario(const RecordedRun& run, std::uint64_t end_step) {
   const std::vector<Fault>& faults = run.scenario.faults;
   const std::string spared =
       keepInScenario(text, "faults", [&](std::size_t index) { return isOfValues(faults.at(index).kind); });
-  return appendToScenario(spared, "changes", changeEntries(run));
+  std::vector<std::string> changes;
+  for (const PlannedChange& change : askedChangesOf(run)) changes.push_back(yamlOf(change, run.scenario));
+  return appendToScenario(spared, "changes", changes);
 }
 
 void writeText(const fs::path& file, const std::string& text) {

@@ -34,6 +34,11 @@ struct RecordedRun {
 /// The handovers of the scenario and those that operators asked for, by step.
 [[nodiscard]] std::vector<PlannedSwap> swapsOf(const RecordedRun& run);
 
+/// Who failed when, and came back when.
+[[nodiscard]] std::vector<PlannedFailure> failuresOf(const RecordedRun& run);
+/// The parameters that operators asked for, and their end with the process that had them.
+[[nodiscard]] std::vector<PlannedChange> askedChangesOf(const RecordedRun& run);
+
 /// A scenario that repeats the run by itself up to `end_step`, decision by decision, as fast as possible, and where
 /// nobody is late. The robot is the file `robot.yaml` beside it.
 [[nodiscard]] std::string repeatingScenario(const RecordedRun& run, std::uint64_t end_step);

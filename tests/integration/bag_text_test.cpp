@@ -196,7 +196,7 @@ std::map<std::string, std::string> messagesOf(const std::string& lines) {
   return messages;
 }
 
-TEST(Bag, ARunsRecordingReadsLikeThroughTheOfficialReaderAndIsTheSameAsAnother) {
+TEST(BagCat, ARunsRecordingReadsLikeThroughTheOfficialReaderAndIsTheSameAsAnother) {
   const Bench bench;
   const std::string scenario = bench.write("short.yaml", shortContact());
   const auto record = [&](const std::string& name) {

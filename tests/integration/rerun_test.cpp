@@ -11,6 +11,7 @@
 #include "support/live_run.hpp"
 #include "support/processes.hpp"
 #include "support/recordings.hpp"
+#include "support/reproduced.hpp"
 #include "support/short_contact.hpp"
 
 namespace baton::test {
@@ -37,11 +38,12 @@ std::vector<std::string> holdersOf(const std::string& recording) {
   return holders;
 }
 
-/// Does it again, and expects the same bytes.
+/// Does it again, and expects the same bytes; and the same torques of each controller by itself.
 nlohmann::json expectIdentical(const Bench& bench, const std::string& recording) {
   nlohmann::json verdict = bench.batonJson({"rerun", recording, "--json"});
   EXPECT_TRUE(verdict.at("identical")) << verdict;
   EXPECT_EQ(verdict.at("steps_compared"), verdict.at("steps"));
+  expectReproduced(bench, recording);
   return verdict;
 }
 

@@ -92,7 +92,8 @@ Bench::~Bench() {
 }
 
 Finished Bench::baton(std::vector<std::string> arguments) const {
-  static const std::vector<std::string> kWithoutDomain{"bag", "metrics", "model", "shadow", "--help", "--version"};
+  static const std::vector<std::string> kWithoutDomain{"bag",    "metrics", "model",    "shadow",
+                                                       "whatif", "--help",  "--version"};
   const bool takes_domain =
       std::find(kWithoutDomain.begin(), kWithoutDomain.end(), arguments.front()) == kWithoutDomain.end();
   if (takes_domain) arguments.insert(arguments.end(), {"--domain", std::to_string(domain_)});

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cctype>
+#include <cstdio>
 #include <fstream>
 #include <utility>
 
@@ -19,7 +20,7 @@ void runGnuplot(const fs::path& folder, const std::string& argument) {
   const pid_t pid = fork();
   if (pid == 0) {
     if (chdir(folder.c_str()) != 0) _exit(126);
-    if (argument == "--version") dup2(STDERR_FILENO, STDOUT_FILENO);
+    if (argument == "--version" && freopen("/dev/null", "w", stdout) == nullptr) _exit(126);
     execlp("gnuplot", "gnuplot", argument.c_str(), nullptr);
     _exit(127);
   }

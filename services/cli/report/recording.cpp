@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/error.hpp"
 #include "runtime/recorded_messages.hpp"
 
 namespace baton {
@@ -14,6 +15,17 @@ std::optional<std::string> attachmentText(const mcap::Reader& reader, const std:
     return std::string(reinterpret_cast<const char*>(data.data()), data.size());
   }
   return std::nullopt;
+}
+
+std::string neededAttachment(const mcap::Reader& reader, const std::string& name, const std::filesystem::path& file) {
+  if (auto text = attachmentText(reader, name)) return *text;
+  throw UsageError(file.string() + ": expected the recording of a run, with its " + name + ", found none");
+}
+
+Scenario recordedScenario(const mcap::Reader& reader, const std::filesystem::path& file) {
+  const std::string robot_text = neededAttachment(reader, "robot.yaml", file);
+  return parseScenario(file.string() + "#scenario.yaml", neededAttachment(reader, "scenario.yaml", file),
+                       file.string() + "#robot.yaml", robot_text);
 }
 
 std::string metadataValue(const mcap::Reader& reader, const std::string& record, const std::string& key) {

@@ -1,15 +1,24 @@
 /// What a run's recording says of itself, beside its messages.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
 #include "mcap/reader.hpp"
+#include "runtime/scenario.hpp"
 
 namespace baton {
 
 /// An attachment's text; nothing when there is none of that name. Throws FormatError when it is damaged.
 [[nodiscard]] std::optional<std::string> attachmentText(const mcap::Reader& reader, const std::string& name);
+
+/// The same of one that every run's recording has. Throws UsageError when there is none.
+[[nodiscard]] std::string neededAttachment(const mcap::Reader& reader, const std::string& name,
+                                           const std::filesystem::path& file);
+
+/// The scenario that the run began with. Throws UsageError when the file is not the recording of a run.
+[[nodiscard]] Scenario recordedScenario(const mcap::Reader& reader, const std::filesystem::path& file);
 
 /// A value of a metadata record; empty when there is no such record or key.
 [[nodiscard]] std::string metadataValue(const mcap::Reader& reader, const std::string& record, const std::string& key);

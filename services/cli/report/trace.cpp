@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
-#include <utility>
 
 #include "base/error.hpp"
 #include "recording.hpp"
@@ -12,11 +10,6 @@
 
 namespace baton {
 namespace {
-
-std::string attachment(const mcap::Reader& reader, const std::string& name, const std::filesystem::path& file) {
-  if (std::optional<std::string> text = attachmentText(reader, name)) return std::move(*text);
-  throw UsageError(file.string() + ": expected the recording of a run, with its " + name + ", found none");
-}
 
 /// The steps from the first recorded state to the last.
 struct Stretch {
@@ -131,9 +124,7 @@ void read(const mcap::Reader& reader, std::uint64_t begin_ns, Filler& filler, co
 Trace readTrace(const std::filesystem::path& file) {
   const mcap::Reader reader(file);
   Trace trace;
-  const std::string robot_text = attachment(reader, "robot.yaml", file);
-  trace.scenario = parseScenario(file.string() + "#scenario.yaml", attachment(reader, "scenario.yaml", file),
-                                 file.string() + "#robot.yaml", robot_text);
+  trace.scenario = recordedScenario(reader, file);
   trace.is_complete = isCertified(reader);
   const std::uint64_t begin_ns = lastTakeBegin(reader);
   const Stretch stretch = statesIn(reader, begin_ns, trace.scenario.step_ns, file);
