@@ -14,11 +14,11 @@
 
 #include "base/error.hpp"
 #include "messages/parameters.hpp"
-#include "progress_line.hpp"
 #include "report/gnuplot.hpp"
 #include "report/plot.hpp"
 #include "report/theory_tools.hpp"
 #include "runtime/json.hpp"
+#include "runtime/progress_line.hpp"
 #include "whatif/command_file.hpp"
 #include "whatif/counterfactual.hpp"
 
