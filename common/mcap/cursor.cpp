@@ -95,12 +95,12 @@ void MessageCursor::load(Candidate& candidate) {
   const Extent& extent = index_.extents[candidate.extent];
   const bool is_sound = loader_.guarded(extent, [&] {
     loaded->records = loader_.load(extent, loaded->storage);
-    collect(*loaded);
+    collect(extent, *loaded);
   });
   (is_sound ? candidate.loaded : spare_.emplace_back()) = std::move(loaded);
 }
 
-void MessageCursor::collect(LoadedExtent& loaded) const {
+void MessageCursor::collect(const Extent& extent, LoadedExtent& loaded) const {
   ByteReader in(loaded.records);
   while (const std::optional<RecordView> record = nextRecord(in)) {
     if (record->opcode != Opcode::kMessage) continue;
@@ -108,6 +108,12 @@ void MessageCursor::collect(LoadedExtent& loaded) const {
     const auto id = static_cast<std::size_t>(message.channel_id);
     if (id >= routes_.size() || routes_[id].channel == nullptr) {
       throw FormatError("a message belongs to channel " + std::to_string(id) + ", which is not known");
+    }
+    // The order of the chunks rests on what their index says.
+    if (filter_.order == MessageFilter::Order::kLogTime &&
+        (message.log_time_ns < extent.start_time_ns || message.log_time_ns > extent.end_time_ns)) {
+      throw FormatError("a message has log time " + std::to_string(message.log_time_ns) + ", its index says " +
+                        std::to_string(extent.start_time_ns) + " to " + std::to_string(extent.end_time_ns));
     }
     const bool is_in_time = message.log_time_ns >= filter_.start_time_ns && message.log_time_ns <= filter_.end_time_ns;
     if (!routes_[id].is_wanted || !is_in_time) continue;

@@ -73,7 +73,7 @@ class MessageCursor {
   void queue(Candidate candidate);
   [[nodiscard]] Candidate takeFirst();
   void load(Candidate& candidate);
-  void collect(LoadedExtent& loaded) const;
+  void collect(const Extent& extent, LoadedExtent& loaded) const;
 
   const FileIndex& index_;
   MessageFilter filter_;

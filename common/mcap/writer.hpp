@@ -27,7 +27,7 @@ struct WriterOptions {
   std::string profile;            // "": no requirements beyond the specification
   std::string library = "baton";  // who wrote the file, with its version
   Compression compression = Compression::kZstd;
-  int compression_level = 0;           // see Compressor
+  int compression_level = 1;           // see Compressor; zstd 3 makes a run's file 3 % smaller, in half as long again
   std::size_t chunk_bytes = 1U << 20;  // a chunk is closed before it grows above this; a larger message gets its own
   bool has_crc = true;                 // CRCs of chunks, attachments, data section and summary
   bool sync_chunks = false;            // each chunk waits for the storage device

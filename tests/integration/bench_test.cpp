@@ -1,4 +1,4 @@
-// The bench of the loop: that it measures. What it measures is the machine's business.
+// The benches of the loop and of the recording: that they measure. What it measures is the machine's business.
 #include <gtest/gtest.h>
 
 #include "support/processes.hpp"
@@ -83,6 +83,27 @@ TEST(SwapBench, MeasuresHandoversInBothModes) {
     EXPECT_TRUE(target.at("reached"));
   }
   EXPECT_NE(finished.err.find("asked to effect"), std::string::npos) << finished.err;  // the table
+}
+
+TEST(RecordingBench, MeasuresWriterAndReader) {
+  const Bench bench;
+  const Finished finished = runProgram(
+      programFolder() / "baton-bench-recording",
+      {"--size", "10", "--written", "1", "--rounds", "1", "--disk", bench.folder().string(), "--json"}, bench.folder());
+  ASSERT_EQ(finished.exit_code, 0) << finished.err;
+  const nlohmann::json rows = nlohmann::json::parse(finished.out);
+  EXPECT_GE(rows.size(), 25U);
+  int targets = 0;
+  for (const auto& row : rows) {
+    SCOPED_TRACE(row.dump());
+    EXPECT_TRUE(row.at("value").is_number());
+    EXPECT_EQ(row.at("target").is_null(), row.at("reached").is_null());
+    if (!row.at("target").is_null()) ++targets;
+  }
+  EXPECT_GE(targets, 14);
+  for (const auto& entry : std::filesystem::directory_iterator(bench.folder())) {
+    EXPECT_FALSE(entry.is_directory()) << entry.path() << " is left lying about";
+  }
 }
 
 TEST(RawChain, PassesEveryStepInBothOrders) {

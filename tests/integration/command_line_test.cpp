@@ -108,6 +108,10 @@ TEST(CommandLine, EveryCommandHasHelp) {
                                                   {"replay"},
                                                   {"bag"},
                                                   {"bag", "info"},
+                                                  {"bag", "verify"},
+                                                  {"bag", "recover"},
+                                                  {"bag", "merge"},
+                                                  {"bag", "cut"},
                                                   {"model"}}) {
     std::vector<std::string> arguments = command;
     arguments.emplace_back("--help");

@@ -14,7 +14,7 @@ namespace {
 constexpr double kMaxSeek_ms = 5.0;
 constexpr double kMinVerify = 300.0;          // MB of file in a second
 constexpr double kMaxGrowth_MB = 8.0;         // of the process, where the file is ten times as large
-constexpr std::uint64_t kBytesASample = 235;  // what three messages of the recording take in the file
+constexpr std::uint64_t kBytesASample = 151;  // what three messages of the recording take in the file
 
 std::filesystem::path makeRecording(const std::filesystem::path& folder, const std::string& name, double megabytes) {
   const auto samples = static_cast<std::uint64_t>(megabytes * 1e6 / kBytesASample);

@@ -325,6 +325,22 @@ TEST_P(PlainWriterTest, CountsAsDurableOnlyWhatWasSynced) {
   EXPECT_LT(writer.statistics().durable_bytes, writer.statistics().file_bytes);
 }
 
+TEST_P(PlainWriterTest, BringsEveryChunkToTheDeviceWhenToldTo) {
+  WriterOptions every_chunk = options();
+  every_chunk.sync_chunks = true;
+  every_chunk.chunk_bytes = 1000;
+  Writer writer(path, every_chunk);
+  const ChannelId channel = writer.addChannel("a", "cdr", kNoSchema);
+  for (unsigned i = 0; i < 100; ++i) {
+    writer.write(channel, i, i, i, payload(100, i));
+    const WriterStatistics statistics = writer.statistics();
+    if (statistics.chunks > 0) {
+      EXPECT_EQ(statistics.durable_bytes, statistics.file_bytes);
+    }
+  }
+  EXPECT_GT(writer.statistics().chunks, 5U);
+}
+
 TEST_P(PlainWriterTest, ClosesOnceAndTakesNothingAfterwards) {
   Writer writer(path, options());
   const ChannelId channel = writer.addChannel("a", "cdr", kNoSchema);

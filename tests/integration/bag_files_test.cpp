@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Bag : public testing::Test {
+class BagFiles : public testing::Test {
  protected:
   [[nodiscard]] std::string record(const std::string& name, const std::string& scenario = shortContact()) const {
     const std::string file = (bench.folder() / name).string();
@@ -32,7 +32,7 @@ class Bag : public testing::Test {
   Bench bench;
 };
 
-TEST_F(Bag, ARunIsProvenCompleteAndSoIsACopyOfIt) {
+TEST_F(BagFiles, ARunIsProvenCompleteAndSoIsACopyOfIt) {
   const std::string file = record("run.mcap");
   const Finished verified = bench.baton({"bag", "verify", file, "--json"});
   EXPECT_EQ(verified.exit_code, 0) << verified.out << verified.err;
@@ -67,7 +67,7 @@ TEST_F(Bag, ARunIsProvenCompleteAndSoIsACopyOfIt) {
   EXPECT_FALSE(fs::exists(path("new.mcap")));
 }
 
-TEST_F(Bag, ACutAndADamagedRecordingAreFoundOutAndRecovered) {
+TEST_F(BagFiles, ACutAndADamagedRecordingAreFoundOutAndRecovered) {
   const std::string file = record("run.mcap");
   const std::uint64_t size = fs::file_size(file);
   fs::copy_file(file, path("cut.mcap"));
@@ -94,7 +94,7 @@ TEST_F(Bag, ACutAndADamagedRecordingAreFoundOutAndRecovered) {
   EXPECT_EQ(verify(path("rest.mcap")), 1) << "it has no certificate any more";
 }
 
-TEST_F(Bag, RunsAreMergedAndKeptApart) {
+TEST_F(BagFiles, RunsAreMergedAndKeptApart) {
   const std::string one = record("one.mcap"), two = record("two.mcap");
   const nlohmann::json merged = bench.batonJson({"bag", "merge", path("both.mcap"), one, two, "--json"});
   const mcap::Reader first(one), second(two), both(path("both.mcap"));
@@ -116,7 +116,7 @@ TEST_F(Bag, RunsAreMergedAndKeptApart) {
   EXPECT_EQ(verify(path("both.mcap")), 1) << "no certificate holds for two runs";
 }
 
-TEST_F(Bag, APartIsCutOutAndSaysSo) {
+TEST_F(BagFiles, APartIsCutOutAndSaysSo) {
   const std::string file = record("run.mcap");
   const mcap::Reader whole(file);
   const std::uint64_t begin = whole.statistics().start_time_ns, end = whole.statistics().end_time_ns;
@@ -182,7 +182,7 @@ TEST_P(KilledRecorder, LeavesARecordingThatIsMadeWholeAgain) {
 INSTANTIATE_TEST_SUITE_P(Seeds, KilledRecorder, testing::Range(1U, 7U));
 
 /// A run whose files may not grow beyond a limit, as on a disk that is full.
-TEST_F(Bag, ARecordingThatFindsNoRoomEndsWithAWordAndIsReadableUpToThere) {
+TEST_F(BagFiles, ARecordingThatFindsNoRoomEndsWithAWordAndIsReadableUpToThere) {
   const std::string file = path("full.mcap");
   const std::string run = "'" + (programFolder() / "baton").string() + "' run '" +
                           bench.write("short.yaml", shortContact()) + "' --domain " + std::to_string(bench.domain()) +
@@ -197,7 +197,7 @@ TEST_F(Bag, ARecordingThatFindsNoRoomEndsWithAWordAndIsReadableUpToThere) {
   EXPECT_GT(mcap::Reader(path("whole.mcap")).statistics().message_count, 0U);
 }
 
-TEST_F(Bag, ACopyThatFindsNoRoomIsNotLeftLyingAbout) {
+TEST_F(BagFiles, ACopyThatFindsNoRoomIsNotLeftLyingAbout) {
   const std::string file = record("run.mcap");
   const std::string recover =
       "'" + (programFolder() / "baton").string() + "' bag recover '" + file + "' '" + path("copy.mcap") + "'";
