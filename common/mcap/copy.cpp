@@ -34,9 +34,8 @@ class Losses {
 Copier::Copier(const std::filesystem::path& out, const WriterOptions& options) : out_(out), writer_(out, options) {}
 
 Copier::~Copier() {
-  if (is_finished_ || !std::filesystem::is_regular_file(out_)) return;
   std::error_code ignored;
-  std::filesystem::remove(out_, ignored);
+  if (!is_finished_ && std::filesystem::is_regular_file(out_, ignored)) std::filesystem::remove(out_, ignored);
 }
 
 ChannelId Copier::channel(const Channel& channel, const Schema* schema) {

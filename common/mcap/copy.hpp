@@ -64,9 +64,9 @@ struct RecoverOptions {
 };
 
 /// Makes a finished, indexed file of everything that can be read of `in`: schemas, channels, messages in their order,
-/// metadata, attachments. Where the file cannot be read it goes on at the next chunk that can. Throws FormatError when
-/// `in` does not begin as an MCAP file, UnavailableError when it cannot be opened or `out` cannot be made, and
-/// WriteError.
+/// metadata, attachments, but no records of kinds that are not known. Where the file cannot be read it goes on at the
+/// next chunk that can. Throws FormatError when `in` does not begin as an MCAP file, UnavailableError when it cannot be
+/// opened or `out` cannot be made, and WriteError.
 Recovery recover(const std::filesystem::path& in, const std::filesystem::path& out, const RecoverOptions& options);
 
 }  // namespace baton::mcap

@@ -90,6 +90,9 @@ fs::path checkedOut(const RunRequest& request) {
     throw UsageError("--out " + request.out + ": expected a file in an existing folder, and " +
                      out.parent_path().string() + " is none");
   }
+  if (fs::exists(out) && !fs::is_regular_file(out)) {
+    throw UsageError("--out " + request.out + ": expected a file, and it is a folder or a device");
+  }
   if (fs::exists(out)) {
     if (!request.overwrite)
       throw UsageError("--out " + request.out + " exists: choose another name or give --overwrite");

@@ -197,6 +197,15 @@ TEST_F(BagFiles, ARecordingThatFindsNoRoomEndsWithAWordAndIsReadableUpToThere) {
   EXPECT_GT(mcap::Reader(path("whole.mcap")).statistics().message_count, 0U);
 }
 
+TEST_F(BagFiles, WhatIsNoFileIsNotReplacedByARecording) {
+  fs::create_directory(path("folder"));
+  const Finished run =
+      bench.baton({"run", bench.write("short.yaml", shortContact()), "--out", path("folder"), "--overwrite"});
+  EXPECT_EQ(run.exit_code, 2) << run.out << run.err;
+  EXPECT_NE(run.err.find("a folder or a device"), std::string::npos) << run.err;
+  EXPECT_TRUE(fs::is_directory(path("folder")));
+}
+
 TEST_F(BagFiles, ACopyThatFindsNoRoomIsNotLeftLyingAbout) {
   const std::string file = record("run.mcap");
   const std::string recover =

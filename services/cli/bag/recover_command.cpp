@@ -77,6 +77,7 @@ void addBagRecover(CLI::App& bag, ExitCode& exit_code) {
   command->footer(
       "Copies all that can be read, and says what cannot: how many bytes, from where on, and why. A copy from which\n"
       "something is missing does not claim to be complete: its certificate is kept under the name original_...\n"
+      "Records of kinds that MCAP does not know are left out.\n"
       "Exit codes: 0 nothing was lost; 1 OUT is there, and something was lost or writing it failed; 2 not a "
       "recording;\n"
       "3 IN cannot be opened, or OUT is there already or cannot be made.");
