@@ -157,13 +157,14 @@ class IdlParser {
       sizes.push_back(bound());
       lexer_.expect("]");
     }
-    for (auto size = sizes.rbegin(); size != sizes.rend(); ++size) {
+    std::ranges::reverse(sizes);  // the last index is the innermost
+    for (const std::uint64_t size : sizes) {
       // No overflow: both factors are below 2^32.
       type = add({.kind = Kind::kArray,
                   .element = type,
-                  .bound = *size,
+                  .bound = size,
                   .depth = type->depth + 1,
-                  .least_bytes = *size * type->least_bytes});
+                  .least_bytes = size * type->least_bytes});
     }
     return {std::move(name), type};
   }

@@ -183,15 +183,14 @@ TEST(BagDiff, ExitCodesSayWhatItFound) {
   EXPECT_EQ(json.at("streams").at(1).at("first").at("field"), "x[0]");
 }
 
-/// Every message by topic, writer and sequence number, as "<times> <message>".
-std::map<std::string, std::string> messagesOf(const std::string& lines) {
-  std::map<std::string, std::string> messages;
+/// Every message with its times, by topic, writer and sequence number.
+std::map<std::string, nlohmann::json> messagesOf(const std::string& lines) {
+  std::map<std::string, nlohmann::json> messages;
   for (const std::string& line : linesOf(lines)) {
     const nlohmann::json json = nlohmann::json::parse(line);
     const std::string key = json.at("topic").get<std::string>() + " " + json.at("writer").get<std::string>() + " " +
                             json.at("sequence").dump();
-    messages[key] =
-        json.at("log_time_ns").dump() + " " + json.at("publish_time_ns").dump() + " " + json.at("message").dump();
+    messages[key] = {json.at("log_time_ns"), json.at("publish_time_ns"), json.at("message")};
   }
   return messages;
 }

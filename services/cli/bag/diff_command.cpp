@@ -112,7 +112,8 @@ void addBagDiff(CLI::App& bag, ExitCode& exit_code) {
       "Without --tolerance and --ignore bytes are compared, with them values; with --tolerance members called *_hash "
       "are\n"
       "left out. A field is named without indices, as position or reference.position, and stands for all within it.\n"
-      "Holds a chunk of each file and the samples that wait for their counterpart.\n"
+      "Memory: a chunk of each recording, those that overlap it in time, and the samples that wait for their "
+      "counterpart.\n"
       "Exit codes: 0 the same, 1 different, 2 wrong input or not a recording, 3 cannot be opened.");
   command->add_option("a", request->a, "recording (MCAP)")->required();
   command->add_option("b", request->b, "another one")->required();

@@ -177,18 +177,21 @@ void addBagExport(CLI::App& bag, ExitCode& exit_code) {
       "\"tip_position[0] [m]\"; sequences have as many columns as the longest in the recording, and cells are empty "
       "where\n"
       "a message has fewer. Booleans are 1 and 0, octets hex. JSON: the lines that `baton bag cat` prints.\n"
-      "Two passes over the file, of which one chunk is held at a time. A file has its name only when it is complete.\n"
+      "Two passes over the recording, of which a chunk is held at a time, and those that overlap it in time. A file "
+      "has\n"
+      "its name only when it is complete.\n"
       "Exit codes: 0 all was exported, 1 some of it is cut, damaged or none of its type and the rest was exported,\n"
       "2 wrong input, not a recording, or a file that is there already, 3 cannot be opened or written.");
   addTopicSelection(*command, request->selection);
   addTimeSelection(*command, request->selection);
-  auto* format = command->add_option_group("format");
-  format->add_flag("--csv", request->csv, "tables, TOPIC.csv");
-  format->add_flag("--json", request->json, "JSON lines, TOPIC.jsonl");
-  format->require_option(1);
+  CLI::Option* csv = command->add_flag("--csv", request->csv, "tables, TOPIC.csv");
+  command->add_flag("--json", request->json, "JSON lines, TOPIC.jsonl")->excludes(csv);
   command->add_option("--out", request->folder, "folder for the files; made when it is not there")->required();
   command->add_flag("--overwrite", request->overwrite, "replace files that are there already");
-  command->callback([request, &exit_code] { exit_code = Export(*request).run(); });
+  command->callback([request, &exit_code] {
+    if (request->csv == request->json) throw UsageError("expected --csv or --json, found neither");
+    exit_code = Export(*request).run();
+  });
 }
 
 }  // namespace baton

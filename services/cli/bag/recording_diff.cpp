@@ -4,6 +4,8 @@
 #include <array>
 #include <deque>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "bag/recorded_types.hpp"
 #include "bag/selection.hpp"
