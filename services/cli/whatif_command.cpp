@@ -47,8 +47,10 @@ class Curves {
   [[nodiscard]] const Scenario& scenario() const { return trace_.scenario; }
 
   void drawTo(const fs::path& stem, const std::string& law, const std::string& place) const {
+    const int n = trace_.scenario.robot.size();
     std::vector<Panel> panels;
-    for (int i = 0; i < trace_.scenario.robot.size(); ++i) {
+    panels.reserve(static_cast<std::size_t>(n));
+    for (int i = 0; i < n; ++i) {
       panels.push_back(
           {.y_label = fmt::format("\u03c4_{{{}}} [{}]", i + 1, theory::effortUnit(trace_.scenario.robot, i)),
            .curves = {{law, &trace_, effort_.row(i), 0, false}, {"recorded", &trace_, recorded_.row(i), 0, true}}});
