@@ -55,8 +55,9 @@ TEST(Interop, TheOfficialReaderDecodesEveryMessage) {
     const std::string cut = (bench.folder() / "cut.mcap").string();
     fs::copy_file(file, cut, fs::copy_options::overwrite_existing);
     fs::resize_file(cut, std::max<std::uint64_t>(8, size * part / 10));
-    EXPECT_EQ(bench.baton({"bag", "recover", cut, out, "--overwrite"}).exit_code, 1);
-    EXPECT_EQ(readOfficially(bench, out).at("messages"), mcap::Reader(cut).statistics().message_count) << part;
+    const mcap::Reader reader(cut);
+    EXPECT_EQ(bench.baton({"bag", "recover", cut, out, "--overwrite"}).exit_code, reader.info().has_all_data ? 0 : 1);
+    EXPECT_EQ(readOfficially(bench, out).at("messages"), reader.statistics().message_count) << part;
   }
 }
 
@@ -72,7 +73,7 @@ TEST(Interop, FilesOfTheOfficialWriterAreRead) {
     EXPECT_TRUE(reader.info().is_complete) << reader.info().problem;
     EXPECT_EQ(reader.info().has_summary, name != "no_summary.mcap" && name != "unchunked.mcap");
     EXPECT_EQ(reader.statistics().message_count, contents.at("messages"));
-    std::map<std::string, std::uint64_t> counts;
+    std::map<std::string, std::set<std::uint32_t>> sequences;  // by topic
     std::set<std::uint64_t> steps;
     std::uint64_t latest = 0;
     reader.forEachMessage({}, [&](const mcap::MessageView& message) {
@@ -81,7 +82,7 @@ TEST(Interop, FilesOfTheOfficialWriterAreRead) {
       ASSERT_NE(message.schema, nullptr);
       EXPECT_EQ(message.schema->name, contents.at("topics").at(message.channel->topic).at("type"));
       EXPECT_EQ(message.channel->metadata.at("service"), "plant");
-      EXPECT_EQ(message.sequence, counts[message.channel->topic]++);
+      EXPECT_TRUE(sequences[message.channel->topic].insert(message.sequence).second);
       mcap::ByteReader payload(message.data);
       (void)payload.bytes(4);
       const auto step = payload.number<std::uint64_t>();
@@ -89,7 +90,10 @@ TEST(Interop, FilesOfTheOfficialWriterAreRead) {
       steps.insert(step);
     });
     EXPECT_EQ(steps.size(), contents.at("messages")) << "each once";
-    for (const auto& [topic, one] : contents.at("topics").items()) EXPECT_EQ(counts[topic], one.at("count"));
+    for (const auto& [topic, one] : contents.at("topics").items()) {
+      EXPECT_EQ(sequences[topic].size(), one.at("count"));
+      EXPECT_EQ(*sequences[topic].rbegin() + 1, one.at("count"));
+    }
     ASSERT_EQ(reader.attachments().size(), 1U);
     EXPECT_EQ(reader.readAttachment(reader.attachments()[0]).size(), std::string("robot: rpp\n").size());
     ASSERT_EQ(reader.metadata().size(), 1U);
