@@ -24,21 +24,39 @@ std::vector<std::string> block(const std::string& heading, const std::string& fe
   return {};
 }
 
-TEST(Readme, TheDailyCommandsWorkInTheirOrder) {
-  const Bench bench;
-  const std::vector<std::string> commands = block("## Every day", "```sh");
-  ASSERT_GE(commands.size(), 16U);
+/// Runs the lines as a person would type them, one after another. What is left in the background may take its time to
+/// appear: the next line waits for it.
+void runLines(const Bench& bench, const std::vector<std::string>& lines) {
   const std::string prefix = "deploy/baton ";
-  for (const std::string& line : commands) {
+  const auto run = [&](const std::string& arguments) {
+    return runProgram("/bin/sh",
+                      {"-c", "cd '" + bench.folder().string() + "' && BATON_DOMAIN=" + std::to_string(bench.domain()) +
+                                 " '" + (programFolder() / "baton").string() + "' " + arguments},
+                      bench.folder());
+  };
+  for (const std::string& line : lines) {
     ASSERT_TRUE(line.starts_with(prefix)) << line;
-    const Finished finished =
-        runProgram("/bin/sh",
-                   {"-c", "cd '" + bench.folder().string() + "' && BATON_DOMAIN=" + std::to_string(bench.domain()) +
-                              " '" + (programFolder() / "baton").string() + "' " + line.substr(prefix.size())},
-                   bench.folder());
+    const Finished finished = run(line.substr(prefix.size()));
     EXPECT_EQ(finished.exit_code, 0) << line << "\n" << finished.out << finished.err;
+    if (line.find(" & ") != std::string::npos) {
+      ASSERT_TRUE(eventually([&] { return run("player status").exit_code == 0; })) << line;
+    }
   }
   EXPECT_TRUE(eventually([&] { return processesWith(bench.folder().string()).empty(); }));
+}
+
+TEST(Readme, TheDailyCommandsWorkInTheirOrder) {
+  const std::vector<std::string> commands = block("## Every day", "```sh");
+  ASSERT_GE(commands.size(), 16U);
+  runLines(Bench(), commands);
+}
+
+TEST(Readme, TheCommandsForRecordingsWorkInTheirOrder) {
+  const Bench bench;
+  ASSERT_EQ(bench.baton({"run", "demo", "--out", (bench.folder() / "demo.mcap").string()}).exit_code, 0);
+  const std::vector<std::string> commands = block("## Recordings", "```sh");
+  ASSERT_GE(commands.size(), 15U);
+  runLines(bench, commands);
 }
 
 TEST(Readme, TheScenarioRuns) {
