@@ -31,14 +31,14 @@ Programs::~Programs() {
   fs::remove_all(folder_, ignored);
 }
 
-void Programs::start(const std::string& program, std::vector<std::string> arguments) {
+void Programs::start(const std::string& program, std::vector<std::string> arguments, int spared_exit_code) {
   const fs::path log = folder_ / (std::to_string(children_.size()) + ".log");
   children_.push_back(std::make_unique<Child>(
       executor_,
       Child::Command{
           .name = program, .program = siblingProgram(program), .arguments = std::move(arguments), .log_file = log},
-      [this, log](Child& child, const Child::End& end) {
-        if (end.by_signal || end.value != 0) {
+      [this, log, spared_exit_code](Child& child, const Child::End& end) {
+        if (end.by_signal || (end.value != 0 && end.value != spared_exit_code)) {
           problem_ = child.name() + " ended with " + end.text() + "; its last words:\n" + lastLines(log, 20);
         }
       }));

@@ -23,10 +23,10 @@ class Programs {
   Programs(const Programs&) = delete;
   Programs& operator=(const Programs&) = delete;
 
-  /// Starts a program that stands beside this one.
-  void start(const std::string& program, std::vector<std::string> arguments);
-  /// Waits until `condition`, which is looked at now and then. Throws UnavailableError when a program ends with another
-  /// exit code than 0, or nothing comes of it in minutes, and Error when the user interrupts.
+  /// Starts a program that stands beside this one. Another exit code than 0 that is no problem may be named.
+  void start(const std::string& program, std::vector<std::string> arguments, int spared_exit_code = 0);
+  /// Waits until `condition`, which is looked at now and then. Throws UnavailableError when a program ends with an exit
+  /// code that is a problem, or nothing comes of it in minutes, and Error when the user interrupts.
   void waitUntil(const std::function<bool()>& condition);
   /// Waits for all that were started. Returns what they printed, in the order of their start.
   [[nodiscard]] std::vector<std::string> finish();

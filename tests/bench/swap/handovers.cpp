@@ -56,6 +56,15 @@ class Operator {
     const std::lock_guard lock(mutex_);
     return step_;
   }
+  [[nodiscard]] std::string holder() {
+    const std::lock_guard lock(mutex_);
+    return holder_;
+  }
+  /// How often somebody took over whom nobody had asked.
+  [[nodiscard]] std::uint64_t failovers() {
+    const std::lock_guard lock(mutex_);
+    return failovers_;
+  }
   /// Waits until that step has opened.
   void waitForStep(std::uint64_t step) {
     wait([&] { return step_ >= step; }, "the run does not go on");
@@ -101,14 +110,18 @@ class Operator {
     const std::lock_guard lock(mutex_);
     plant_ = dds::prefixOf(sample.writer);
     step_ = state.step();
+    holder_ = state.holder().c_str();
     sent_ns_[state.step()] = sample.source_timestamp_ns;
     if (sent_ns_.size() > kRemembered) sent_ns_.erase(sent_ns_.begin());
     changed_.notify_all();
   }
   void onOutcome(const msg::SwapOutcome& outcome) {
     const std::lock_guard lock(mutex_);
-    if (outcome.request_id() == 0) return;  // a failover: nobody asked
-    outcome_ = outcome;
+    if (outcome.request_id() == 0) {
+      ++failovers_;
+    } else {
+      outcome_ = outcome;
+    }
     changed_.notify_all();
   }
   template <class Condition>
@@ -121,6 +134,8 @@ class Operator {
   std::condition_variable changed_;
   std::optional<dds::GuidPrefix> plant_;
   std::uint64_t step_ = 0;
+  std::string holder_;
+  std::uint64_t failovers_ = 0;
   std::map<std::uint64_t, std::int64_t> sent_ns_;  // of the latest states
   std::optional<msg::SwapOutcome> outcome_;
   std::uint64_t last_request_ = 0;
@@ -130,6 +145,15 @@ class Operator {
   dds::Writer<msg::SwapRequest> swaps_;
   dds::Writer<msg::SimRequest> requests_;
 };
+
+/// The controller behind that one, and behind the last the first; the first also when nobody holds the baton.
+const std::string& nextTo(const std::string& holder, const Scenario& scenario) {
+  const auto& all = scenario.controllers;
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+    if (all[i].name == holder) return all[i + 1].name;
+  }
+  return all.front().name;
+}
 
 /// Where we are, on a terminal.
 void show(const SwapCase& one, int done, int swaps) {
@@ -154,7 +178,7 @@ Handovers measureHandovers(const SwapCase& one, int swaps, const std::vector<std
   std::vector<std::string> arguments{"run",   file, "--cell", cell, "--domain", std::to_string(programs.domain()),
                                      "--json"};
   arguments.insert(arguments.end(), scheduling.begin(), scheduling.end());
-  programs.start("baton", arguments);
+  programs.start("baton", arguments, static_cast<int>(ExitCode::kFailed));  // a holder may lose the baton
   programs.waitUntil([&] { return person.isConnected(); });
   // A force law is only fit for contact.
   programs.waitUntil([&] { return person.step() >= kContactWithin_steps; });
@@ -164,13 +188,10 @@ Handovers measureHandovers(const SwapCase& one, int swaps, const std::vector<std
   made.margin_steps = scenario.baton.margin_steps;
   std::mt19937 random(1);  // the same each time
   std::uniform_int_distribution<int> within_step_us(0, static_cast<int>(scenario.step_ns / 1000));
-  std::size_t holder = 0;
-  while (scenario.controllers[holder].name != scenario.active) ++holder;
   for (int i = 0; i < swaps; ++i) {
     show(one, i, swaps);
-    holder = (holder + 1) % scenario.controllers.size();
     std::this_thread::sleep_for(std::chrono::microseconds(within_step_us(random)));
-    const Operator::Answer answer = person.handOver(scenario.controllers[holder].name);
+    const Operator::Answer answer = person.handOver(nextTo(person.holder(), scenario));
     const msg::SwapOutcome& outcome = answer.outcome;
     if (outcome.done()) {
       made.asked_to_effect_ms.push_back(static_cast<double>(answer.effect_ns - answer.asked_ns) * 1e-6);
@@ -183,6 +204,7 @@ Handovers measureHandovers(const SwapCase& one, int swaps, const std::vector<std
     programs.waitUntil([] { return true; });  // interrupted?
   }
   show(one, swaps, swaps);
+  made.lost = person.failovers();
   person.stop();
   made.timing = jsonIn(programs.finish().front()).at("timing");
   return made;

@@ -25,8 +25,9 @@ struct Handovers {
   std::vector<double> asked_to_effect_ms;  // from the request to the state that names the new holder
   std::vector<std::uint64_t> steps;        // from the step that was open when the plant decided to that state's
   std::uint64_t refused = 0;
-  std::string refusal;    // the first one's reason
-  nlohmann::json timing;  // of the run's result: handover_us is the plant's own count, from its plan to that state
+  std::string refusal;     // the first one's reason
+  std::uint64_t lost = 0;  // how often a holder lost the baton: it was too slow for real time
+  nlohmann::json timing;   // of the run's result: handover_us is the plant's own count, from its plan to that state
 };
 
 /// Runs the scenario `lab`, with all its parts and its recorder, and asks `swaps` times for a handover to the next of

@@ -53,6 +53,7 @@ Json toJson(const SwapCase& one, const Handovers& made) {
           {"done", made.steps.size()},
           {"refused", made.refused},
           {"refusal", made.refusal},
+          {"lost", made.lost},
           {"missed_steps", made.timing.at("missed")},
           {"asked_to_effect_ms", effect},
           {"decided_to_effect_ms", spreadOf(made.timing.at("handover_us"))},
@@ -91,7 +92,8 @@ void printTable(const Json& report, std::ostream& out) {
         << one.at("name").get<std::string>() << ", steps of " << one.at("step_ms") << " ms, margin "
         << one.at("margin_steps") << " steps: " << one.at("done") << " done, " << one.at("refused") << " refused";
     if (one.at("refused") > 0) out << " (" << one.at("refusal").get<std::string>() << ")";
-    out << ", " << one.at("missed_steps") << " steps missed\n  " << std::left << std::setw(34) << "" << std::right;
+    out << ", " << one.at("missed_steps") << " steps missed, the baton lost " << one.at("lost") << " times\n  "
+        << std::left << std::setw(34) << "" << std::right;
     for (const char* heading : {"p50", "p99", "max"}) out << std::setw(10) << heading;
     out << "\n";
     line(out, "asked to effect [ms]", one.at("asked_to_effect_ms"), 3);
