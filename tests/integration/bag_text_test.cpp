@@ -27,7 +27,7 @@ std::string contentOf(const std::filesystem::path& path) {
 
 /// Five samples of "plain", a millisecond apart, and after each one of "opaque", which has no schema.
 std::string smallFile(const Bench& bench, const std::string& name = "small.mcap", double last = 4.0) {
-  const std::string path = (bench.folder() / name).string();
+  std::string path = (bench.folder() / name).string();
   SmallRecording recording(path);
   for (int i = 0; i < 5; ++i) {
     recording.addBytes("plain", "maker", "Sample", "struct Sample { long n; @unit(\"m\") sequence<double> x; };",

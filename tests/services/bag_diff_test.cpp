@@ -20,14 +20,14 @@ class BagDiff : public testing::Test {
  protected:
   BagDiff() {
     std::string name = (std::filesystem::temp_directory_path() / "baton-diff-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
+    folder = ::mkdtemp(name.data());
   }
   ~BagDiff() override {
     std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
+    std::filesystem::remove_all(folder, ignored);
   }
   std::string write(const std::string& name, const std::function<void(SmallRecording&)>& fill) const {
-    const std::string path = (folder_ / name).string();
+    std::string path = (folder / name).string();
     SmallRecording recording(path);
     fill(recording);
     recording.close();
@@ -40,7 +40,7 @@ class BagDiff : public testing::Test {
     return diffRecordings(request, [](double) {});
   }
 
-  std::filesystem::path folder_;
+  std::filesystem::path folder;
 };
 
 msg::JointCommand command(std::uint64_t step, double effort, std::uint64_t hash = 0) {
@@ -53,7 +53,7 @@ msg::JointCommand command(std::uint64_t step, double effort, std::uint64_t hash 
 }
 
 /// Commands of these steps, each with an effort like its step, but for `other`.
-std::function<void(SmallRecording&)> commands(std::vector<std::uint64_t> steps, double other = 0.0,
+std::function<void(SmallRecording&)> commands(const std::vector<std::uint64_t>& steps, double other = 0.0,
                                               std::uint64_t at = UINT64_MAX) {
   return [=](SmallRecording& out) {
     for (const std::uint64_t step : steps) {

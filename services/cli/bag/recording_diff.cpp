@@ -118,11 +118,11 @@ class Differ {
   }
 
   template <class IsCompared>
-  void openStreams(std::size_t side, const IsCompared& isCompared) {
+  void openStreams(std::size_t side, const IsCompared& is_compared) {
     Side& file = sides_[side];
     mcap::MessageFilter filter;
     for (const auto& [id, channel] : file.reader.channels()) {
-      if (!isCompared(channel.topic)) continue;
+      if (!is_compared(channel.topic)) continue;
       Stream& stream = streams_[{channel.topic, serviceOf(channel)}];
       stream.is_there[side] = true;
       file.streams[id] = &stream;
