@@ -27,9 +27,8 @@ class Scan {
       const std::optional<RecordPlace> place = walk.next();
       if (is_data && goOnBehindDamage(walk, place)) continue;
       if (!place) break;
-      if (std::exchange(is_first, false) && takeHeader(*place)) {
-        continue;
-      } else if (place->opcode == Opcode::kFooter) {
+      if (std::exchange(is_first, false) && takeHeader(*place)) continue;
+      if (place->opcode == Opcode::kFooter) {
         closeRun();
         closeFile(*place);
         return finish();

@@ -38,7 +38,7 @@ class Ledger {
 
   /// Books a sample; what manifests and the status of services say of who vouches for what is noted. Returns false for
   /// one that came already (it is not to be recorded again).
-  bool book(Stream& stream, std::uint64_t sequence, std::span<const std::byte> payload);
+  bool book(Stream& booked, std::uint64_t sequence, std::span<const std::byte> payload);
   bool book(const Key& key, std::uint64_t sequence, std::span<const std::byte> payload) {
     return book(streamOf(key), sequence, payload);
   }

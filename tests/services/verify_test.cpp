@@ -30,14 +30,14 @@ std::string all(const Verification& found) {
 class VerifyTest : public testing::Test {
  protected:
   [[nodiscard]] std::vector<std::string> write(const RecordingPlan& plan = {}) const {
-    return writeRecording(bench_.folder(), "run", plan);
+    return writeRecording(bench.folder(), "run", plan);
   }
   static Verification verify(const std::vector<std::string>& files) {
     return verifyRecording(files, [](double) {});
   }
   [[nodiscard]] Verification verifyWith(const RecordingPlan& plan) const { return verify(write(plan)); }
 
-  Bench bench_;
+  Bench bench;
 };
 
 TEST_F(VerifyTest, AWholeRecordingIsProvenComplete) {
@@ -118,17 +118,17 @@ TEST_F(VerifyTest, APartThatIsMissingIsNamed) {
 
 TEST_F(VerifyTest, FilesThatAreNotPartsOfOneRecordingAreRefused) {
   const std::vector<std::string> files = write({.parts = 2}),
-                                 others = writeRecording(bench_.folder(), "other", {.parts = 2});
+                                 others = writeRecording(bench.folder(), "other", {.parts = 2});
   EXPECT_THROW(verify({files[0], files[0]}), UsageError);
   EXPECT_THROW(verify({files[0], others[1]}), UsageError);
-  const std::string single = writeRecording(bench_.folder(), "single")[0];
+  const std::string single = writeRecording(bench.folder(), "single")[0];
   EXPECT_THROW(verify({single, files[0]}), UsageError);
-  EXPECT_THROW(verify({bench_.write("text.mcap", "hello")}), UsageError);
-  EXPECT_THROW(verify({(bench_.folder() / "absent.mcap").string()}), UnavailableError);
+  EXPECT_THROW(verify({bench.write("text.mcap", "hello")}), UsageError);
+  EXPECT_THROW(verify({(bench.folder() / "absent.mcap").string()}), UnavailableError);
 }
 
 TEST_F(VerifyTest, ARecordingOfSomebodyElseIsNotProven) {
-  const std::string file = (bench_.folder() / "foreign.mcap").string();
+  const std::string file = (bench.folder() / "foreign.mcap").string();
   {
     mcap::Writer writer(file);
     writer.write(writer.addChannel("pose", "cdr", mcap::kNoSchema), 1, 1, 1, {});

@@ -33,9 +33,8 @@ double median(std::vector<double> values) {
 Ended runProgram(const std::string& name, const std::vector<std::string>& arguments) {
   std::vector<std::string> all{siblingProgram(name).string()};
   all.insert(all.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& argument : all) argv.push_back(argument.data());
-  argv.push_back(nullptr);
+  std::vector<char*> argv(all.size() + 1, nullptr);
+  std::transform(all.begin(), all.end(), argv.begin(), [](std::string& argument) { return argument.data(); });
   const Stopwatch watch;
   const pid_t pid = ::fork();
   if (pid < 0) throw UnavailableError("cannot start " + all.front());

@@ -81,6 +81,7 @@ void measureWriter(const Plan& plan, const Report& report) {
   const auto measured = [&](const std::filesystem::path& path, const mcap::WriterOptions& options, std::size_t size,
                             double sync_s = 0.0) {
     std::vector<Written> runs;
+    runs.reserve(static_cast<std::size_t>(plan.rounds));
     for (int round = 0; round < plan.rounds; ++round) {
       runs.push_back(write(path, options, size, plan.written_megabytes, sync_s));
     }
