@@ -117,8 +117,10 @@ Recovery recover(const std::filesystem::path& in, const std::filesystem::path& o
       attachments.push_back(&index);
     });
   }
+  // Bytes between chunks were changed: whether one of them had been a chunk's first, nobody can tell.
+  const bool is_as_written = reader.dataCrcMatches().value_or(true);
   const auto nameOf = [&](const std::string& name) {
-    return losses.empty() || !options.lossy_name ? name : options.lossy_name(name);
+    return (losses.empty() && is_as_written) || !options.lossy_name ? name : options.lossy_name(name);
   };
   for (const Metadata& one : metadata) copy.metadata(nameOf(one.name), one.values);
   for (const AttachmentIndex* index : attachments) {
@@ -128,8 +130,8 @@ Recovery recover(const std::filesystem::path& in, const std::filesystem::path& o
   result.attachments = attachments.size();
   result.metadata = metadata.size();
   result.lost = losses.list();
-  result.is_whole = result.lost.empty() && result.info.is_complete && result.info.problem.empty() &&
-                    reader.dataCrcMatches().value_or(true);
+  result.is_changed = !is_as_written;
+  result.is_whole = result.lost.empty() && is_as_written && result.info.is_complete && result.info.problem.empty();
   return result;
 }
 

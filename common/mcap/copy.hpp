@@ -49,6 +49,7 @@ class Copier {
 struct Recovery {
   FileInfo info{};             // of the file that was read
   std::vector<Damage> lost{};  // by place: what could not be read; empty when nothing was lost
+  bool is_changed = false;     // bytes are not as they were written, by the CRC of the data: something may be lost
   bool is_whole = false;       // nothing was lost, and no byte is another than was written
   std::uint64_t messages = 0;  // in the copy, as what follows
   std::uint64_t attachments = 0;

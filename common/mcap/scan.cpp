@@ -14,6 +14,9 @@ constexpr std::uint64_t kRunBytes = 4 << 20;
 /// The fields in front of an attachment's data are looked for in its first bytes only: its data can be of any size.
 constexpr std::uint64_t kAttachmentHeadBytes = 1 << 20;
 
+/// What a DataEnd holds; another length is another record with a damaged opcode.
+constexpr std::uint64_t kDataEndBytes = 4;
+
 class Scan {
  public:
   Scan(const InputFile& file, const ReaderOptions& options) : file_(file), options_(options), loader_(file, options) {}
@@ -34,7 +37,7 @@ class Scan {
         return finish();
       } else if (is_data) {
         take(*place);
-        is_data = place->opcode != Opcode::kDataEnd;
+        is_data = place->opcode != Opcode::kDataEnd || place->body_length != kDataEndBytes;
         index_.info.has_all_data = !is_data;
       }
     }

@@ -74,6 +74,17 @@ double parseRate(const std::string& what, const std::string& text) {
   return rate;
 }
 
+CLI::Validator notNegative() {
+  return {[](const std::string& text) -> std::string {
+            double number = -1.0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+            const bool is_right =
+                error == std::errc() && end == text.data() + text.size() && std::isfinite(number) && number >= 0.0;
+            return is_right ? "" : "expected a number that is not below 0, found '" + text + "'";
+          },
+          "NONNEGATIVE"};
+}
+
 void addScheduling(CLI::App& app, Scheduling& scheduling) {
   const auto complaint = [](const std::string& text) -> std::string {
     try {

@@ -26,6 +26,8 @@ CLI::Option* addDomain(CLI::App& app, int& domain);
 CLI::Option* addTransport(CLI::App& app, dds::Transport& transport);
 /// A rate as people write it: seconds per second, or max, which is 0. Throws UsageError, saying `what` it was for.
 [[nodiscard]] double parseRate(const std::string& what, const std::string& text);
+/// For numbers that are finite and not negative; CLI's own check lets NaN pass.
+[[nodiscard]] CLI::Validator notNegative();
 /// --fifo and --cpus.
 void addScheduling(CLI::App& app, Scheduling& scheduling);
 

@@ -12,7 +12,7 @@ namespace baton {
 /// "[######..................]" for a part from 0 to 1.
 [[nodiscard]] inline std::string progressBar(double part) {
   constexpr int kWidth = 24;
-  const int filled = static_cast<int>(std::clamp(part, 0.0, 1.0) * kWidth);
+  const int filled = part > 0.0 ? static_cast<int>(std::min(part, 1.0) * kWidth) : 0;  // NaN is nothing done
   return "[" + std::string(static_cast<std::size_t>(filled), '#') +
          std::string(static_cast<std::size_t>(kWidth - filled), '.') + "]";
 }

@@ -110,7 +110,8 @@ void ask(const Arguments& arguments, ExitCode& exit_code) {
   msg::ReplayRequest request = arguments.request;
   request.request_id(CellClient::newRequestId());
   // A step is answered when it is done; replays manage ten messages in a millisecond.
-  const auto patience = CellClient::kPatience + std::chrono::milliseconds(std::min<std::uint64_t>(request.messages(), 3'600'000));
+  const auto patience =
+      CellClient::kPatience + std::chrono::milliseconds(std::min<std::uint64_t>(request.messages(), 3'600'000));
   const auto reply = client.ask<msg::ReplayRequest, msg::ReplayReply>(
       dds::topics::kReplayRequest, request, dds::topics::kReplayReply,
       [&](const msg::ReplayReply& one) { return one.request_id() == request.request_id(); }, kReplayer, patience);

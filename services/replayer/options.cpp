@@ -69,8 +69,8 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
          "recorded seconds per second, or max; above 1 it waits for slow readers rather than let them lose messages")
       ->capture_default_str();
   app.add_option("--from", options.from_s, "start here, in s of log time from the recording's first message")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--to", options.to_s, "end here, likewise")->check(CLI::NonNegativeNumber);
+      ->check(notNegative());
+  app.add_option("--to", options.to_s, "end here, likewise")->check(notNegative());
   CLI::Option* loop = app.add_option("--loop", passes,
                                      "N times in all, or without end: at once from the start again, with the source "
                                      "timestamps of the recording, which go back; sequence numbers go on")
@@ -84,10 +84,10 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
       ->delimiter(',')
       ->allow_extra_args(false);
   app.add_option("--overdue-us", options.overdue_us, "count messages that are later than this")
-      ->check(CLI::NonNegativeNumber)
+      ->check(notNegative())
       ->capture_default_str();
   app.add_option("--max-late-us", options.max_late_us, "exit code 1 when a message was later than this")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notNegative());
   addScheduling(app, options.scheduling);
   app.add_flag("--json", options.json, "the summary as a JSON object");
   if (!parseCommandLine(app, argc, argv)) return false;

@@ -50,7 +50,6 @@ void Outlet::spareReaders(bool is_hurried) {
 }
 
 void Outlet::waitForAcknowledgments() {
-  in_flight_ = 0;
   for (auto& [id, line] : lines_) {
     const std::int64_t since_ns = steadyNow();
     bool has_told = false;
@@ -67,6 +66,7 @@ void Outlet::waitForAcknowledgments() {
       }
     }
   }
+  in_flight_ = 0;
 }
 
 Readers Outlet::readers() const {

@@ -61,7 +61,7 @@ Replayer::Replayer(const ReplayOptions& options)
       outlet_(participant_, playlist_.endpoints(),
               [this] {
                 reportBefore(kForever_ns);
-                return !isInterrupted();
+                return !isInterrupted() && !playback_.isStopped() && !sleeper_.rings();
               }),
       remote_(participant_, [this] { sleeper_.ring(); }) {
   fetch();
@@ -159,7 +159,7 @@ void Replayer::noteLateness(std::int64_t late_ns) {
 
 /// Or until something happens.
 void Replayer::sleepUntil(std::int64_t deadline_ns) {
-  const bool reports_before = deadline_ns - next_report_ns_ > kQuiet_ns;
+  const bool reports_before = next_report_ns_ > steadyNow() && deadline_ns - next_report_ns_ > kQuiet_ns;
   sleeper_.sleepUntil(reports_before ? next_report_ns_ : deadline_ns, terminal_->descriptor());
 }
 

@@ -51,11 +51,11 @@ Sleeper::~Sleeper() {
 }
 
 void Sleeper::ring() noexcept {
-  was_rung_ = true;
   const int error = errno;  // of what a signal interrupts
   const std::uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = write(bell_, &one, sizeof one);  // full: it rings already
   errno = error;
+  was_rung_ = true;  // last: who sees it empties the bell
 }
 
 bool Sleeper::wasRung() noexcept {

@@ -21,6 +21,8 @@ class Sleeper {
   void ring() noexcept;
   /// Whether somebody rang since this was asked last.
   [[nodiscard]] bool wasRung() noexcept;
+  /// The same without taking notice of it.
+  [[nodiscard]] bool rings() const noexcept { return was_rung_; }
   /// Returns when it is that time, or before it after a ring or when `input` (-1 for none) can be read.
   void sleepUntil(std::int64_t deadline_ns, int input);
 

@@ -107,6 +107,14 @@ TEST(BagCat, PrintsWhatIsLeftOfADamagedOrCutFileAndSaysSo) {
   EXPECT_EQ(cut.exit_code, 1);
   EXPECT_EQ(linesOf(cut.out).size(), 1U);
   EXPECT_NE(cut.err.find("cut"), std::string::npos) << cut.err;
+
+  // Damage that is found while the file is opened, as it has no index any more.
+  std::string bytes = contentOf(file);
+  bytes.at(bytes.find("Sample")) ^= 1;
+  std::ofstream(file, std::ios::binary) << bytes;
+  const Finished damaged = bench.baton({"bag", "cat", file});
+  EXPECT_EQ(damaged.exit_code, 1);
+  EXPECT_NE(damaged.err.find("cannot be read"), std::string::npos) << damaged.err;
 }
 
 TEST(BagExport, WritesATableForEachTopicAndNothingOverAnother) {

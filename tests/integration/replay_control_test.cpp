@@ -105,7 +105,10 @@ class ReplayControl : public testing::Test {
     return nlohmann::json::parse(finished.out);
   }
   [[nodiscard]] bool stands(const std::string& state) {
-    return eventually([&] { return player({"status"}).at("state") == state; });
+    return eventually([&] {  // it may take its time to appear
+      const Finished status = bench_.baton({"player", "status", "--json"});
+      return status.exit_code == 0 && nlohmann::json::parse(status.out).at("state") == state;
+    });
   }
   Bench bench_;
   int pid_ = 0;

@@ -13,6 +13,7 @@
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
 #include "control/nearest_name.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
 
@@ -72,7 +73,8 @@ ExitCode cut(const CutRequest& request) {
   {
     ProgressLine line;
     const std::uint64_t begin = std::max(filter.start_time_ns, reader->statistics().start_time_ns);
-    const auto span = static_cast<double>(std::min(filter.end_time_ns, reader->statistics().end_time_ns) - begin);
+    const std::uint64_t end = std::min(filter.end_time_ns, reader->statistics().end_time_ns);
+    const auto span = static_cast<double>(end > begin ? end - begin : 1);
     reader->forEachMessage(filter, [&](const mcap::MessageView& message) {
       copy.message(message);
       if (copy.messages() % 0x4000 != 0) return;
@@ -106,9 +108,9 @@ void addBagCut(CLI::App& bag, ExitCode& exit_code) {
   command->add_option("in", request->in, "recording (MCAP)")->required();
   addTarget(*command, request->out);
   command->add_option("--from", request->from_s, "start here, in s of log time from the recording's first message")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notNegative());
   command->add_option("--to", request->to_s, "end here, likewise; a message at that time is kept")
-      ->check(CLI::NonNegativeNumber);
+      ->check(notNegative());
   command->add_option("--topics", request->topics, "only these topics: a,b,c")->delimiter(',')->allow_extra_args(false);
   command->add_flag("--json", request->json, "as a JSON object");
   command->callback([request, &exit_code] { exit_code = cut(*request); });

@@ -28,8 +28,9 @@ std::uint64_t bytesOf(const std::vector<mcap::Damage>& lost) {
 std::string verdictOn(const mcap::Recovery& found) {
   if (!found.lost.empty()) return fmt::format("{} of its bytes could not be read", bytesOf(found.lost));
   if (found.is_whole) return "it was whole, and is copied";
-  if (!found.info.problem.empty()) return "nothing was lost, it has its index again: " + found.info.problem;
-  return "nothing was lost; bytes between the messages were changed, as the CRC of its data says";
+  if (found.is_changed)
+    return "bytes between its chunks were changed, as the CRC of its data says: something may be lost";
+  return "nothing was lost, it has its index again: " + found.info.problem;
 }
 
 void printText(const RecoverRequest& request, const mcap::Recovery& found) {
@@ -66,7 +67,7 @@ ExitCode recover(const RecoverRequest& request) {
   } else {
     printText(request, found);
   }
-  return found.lost.empty() ? ExitCode::kOk : ExitCode::kFailed;
+  return found.lost.empty() && !found.is_changed ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 }  // namespace
@@ -78,8 +79,8 @@ void addBagRecover(CLI::App& bag, ExitCode& exit_code) {
       "Copies all that can be read, and says what cannot: how many bytes, from where on, and why. A copy from which\n"
       "something is missing does not claim to be complete: its certificate is kept under the name original_...\n"
       "Records of kinds that MCAP does not know are left out.\n"
-      "Exit codes: 0 nothing was lost; 1 OUT is there, and something was lost or writing it failed; 2 not a "
-      "recording;\n"
+      "Exit codes: 0 nothing was lost; 1 OUT is there, and something was or may be lost, or writing it failed;\n"
+      "2 not a recording;\n"
       "3 IN cannot be opened, or OUT is there already or cannot be made.");
   command->add_option("in", request->in, "recording (MCAP)")->required();
   addTarget(*command, request->out);

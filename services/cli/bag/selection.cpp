@@ -6,6 +6,7 @@
 #include <set>
 
 #include "control/nearest_name.hpp"
+#include "runtime/command_line.hpp"
 
 namespace baton {
 namespace {
@@ -25,8 +26,8 @@ void addTopicSelection(CLI::App& command, Selection& selection) {
 
 void addTimeSelection(CLI::App& command, Selection& selection) {
   command.add_option("--from", selection.from_s, "start here, in s of log time from the recording's first message")
-      ->check(CLI::NonNegativeNumber);
-  command.add_option("--to", selection.to_s, "end here, likewise")->check(CLI::NonNegativeNumber);
+      ->check(notNegative());
+  command.add_option("--to", selection.to_s, "end here, likewise")->check(notNegative());
 }
 
 std::vector<std::string> topicNames(const mcap::Reader& reader) {

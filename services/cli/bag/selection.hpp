@@ -48,9 +48,9 @@ class SelectedMessages {
   std::map<std::uint64_t, std::string> damage_;  // by place: each pass comes across the same
   bool has_problem_ = false;
   std::string file_;
-  mcap::Reader reader_;
-  mcap::MessageFilter filter_;
   ProgressLine progress_;
+  mcap::Reader reader_;  // finds damage while it is made, and tells of it
+  mcap::MessageFilter filter_;
 };
 
 /// All topics of a recording, sorted.
