@@ -109,8 +109,9 @@ void MessageCursor::collect(const Extent& extent, LoadedExtent& loaded) const {
     if (id >= routes_.size() || routes_[id].channel == nullptr) {
       throw FormatError("a message belongs to channel " + std::to_string(id) + ", which is not known");
     }
-    // The order of the chunks, and which of them are looked into at all, rest on what their index says.
-    if (message.log_time_ns < extent.start_time_ns || message.log_time_ns > extent.end_time_ns) {
+    // The order of the chunks rests on what their index says.
+    if (filter_.order == MessageFilter::Order::kLogTime &&
+        (message.log_time_ns < extent.start_time_ns || message.log_time_ns > extent.end_time_ns)) {
       throw FormatError("a message has log time " + std::to_string(message.log_time_ns) + ", its index says " +
                         std::to_string(extent.start_time_ns) + " to " + std::to_string(extent.end_time_ns));
     }

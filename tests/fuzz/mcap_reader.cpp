@@ -91,10 +91,10 @@ void readAll(const std::string& path, ReaderOptions options) {
 void recoverAll(const std::string& path, bool check_crc) {
   RecoverOptions options;
   options.reader = tolerant(check_crc);
-  options.writer = {.compression = Compression::kNone,
-                    .chunk_bytes = 4096,
-                    .sync_on_close = false,
-                    .if_exists = OutputFile::IfExists::kReplace};
+  options.writer.compression = Compression::kNone;
+  options.writer.chunk_bytes = 4096;
+  options.writer.sync_on_close = false;
+  options.writer.if_exists = OutputFile::IfExists::kReplace;
   const MemoryFile out({}), again({});
   Recovery first;
   try {
