@@ -35,7 +35,8 @@ class Scan {
         closeRun();
         closeFile(*place);
         return finish();
-      } else if (is_data) {
+      }
+      if (is_data) {
         take(*place);
         is_data = place->opcode != Opcode::kDataEnd || place->body_length != kDataEndBytes;
         index_.info.has_all_data = !is_data;
