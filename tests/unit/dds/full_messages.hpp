@@ -25,8 +25,7 @@ using AllTypes =
                    msg::SwapReport, msg::BatonMember, msg::BatonStatus, msg::ControllerStatus, msg::Parameter,
                    msg::ParameterStatus, msg::ParameterValue, msg::ParameterRequest, msg::ParameterReply, msg::Decision,
                    msg::LaunchRequest, msg::LaunchReply, msg::ServiceStatus, msg::Event, msg::StreamManifest,
-                   msg::ServiceManifest, msg::RecorderStatus, msg::ReplayStatus,
-                   msg::ReplayRequest, msg::ReplayReply>;
+                   msg::ServiceManifest, msg::RecorderStatus, msg::ReplayStatus, msg::ReplayRequest, msg::ReplayReply>;
 
 inline constexpr std::uint64_t kId = 0xFEDC'BA98'7654'3210;
 inline constexpr std::int64_t kTime = -0x0123'4567'89AB'CDEF;
