@@ -52,10 +52,10 @@ SchemaId Writer::addSchema(std::string_view name, std::string_view encoding, Byt
                 .name = std::string(name),
                 .encoding = std::string(encoding),
                 .data = Bytes(data.begin(), data.end())};
-  scratch_.clear();
-  appendSchema(scratch_, schema);
-  makeRoom(scratch_.size());
-  append(chunk_, scratch_);
+  Bytes record;  // not scratch_, which closing a chunk uses
+  appendSchema(record, schema);
+  makeRoom(record.size());
+  append(chunk_, record);
   schemas_.push_back(std::move(schema));
   return schemas_.back().id;
 }
@@ -75,10 +75,10 @@ ChannelId Writer::addChannel(std::string_view topic, std::string_view message_en
                                  .message_encoding = std::string(message_encoding),
                                  .metadata = metadata},
                      .index = {.channel_id = id}};
-  scratch_.clear();
-  appendChannel(scratch_, state.channel);
-  makeRoom(scratch_.size());
-  append(chunk_, scratch_);
+  Bytes record;
+  appendChannel(record, state.channel);
+  makeRoom(record.size());
+  append(chunk_, record);
   channels_.push_back(std::move(state));
   return id;
 }

@@ -68,6 +68,27 @@ TEST_P(WriterTest, GivesBackWhatWasWritten) {
   EXPECT_EQ(reader.dataCrcMatches(), true);
 }
 
+TEST_P(WriterTest, AChannelThatComesWhenAChunkIsFullIsInTheData) {
+  std::vector<Sample> written;
+  Writer writer(path, options(1000));
+  for (unsigned i = 0; i < 40; ++i) {
+    const std::string topic = "topic" + std::to_string(i);
+    const SchemaId schema = writer.addSchema("T" + std::to_string(i), "omgidl", payload(i * 7 % 300, i));
+    const ChannelId channel = writer.addChannel(topic, "cdr", schema, {{"of", topic}});
+    written.push_back({.topic = topic, .sequence = 1, .log_time_ns = i, .data = payload(50 + i % 200, i)});
+    writer.write(channel, 1, i, 0, written.back().data);
+  }
+  writer.close();
+  // Without its summary it has to be explained by its data alone.
+  const Bytes whole = loadFile(path);
+  saveFile(path, ByteView(whole).first(whole.size() - 10));
+  const Reader reader(path);
+  EXPECT_FALSE(reader.info().has_summary);
+  EXPECT_EQ(reader.channels().size(), 40U);
+  EXPECT_EQ(reader.schemas().size(), 40U);
+  EXPECT_EQ(samplesOf(reader), written);
+}
+
 TEST_P(WriterTest, SummaryAgreesWithWhatIsInTheData) {
   {
     Writer writer(path, options());
