@@ -91,6 +91,9 @@ struct RawWriter::Impl final : DataWriterListener {
   }
   ~Impl() override {
     writer->set_listener(nullptr);
+    // While Fast DDS 2.9.1 deletes a writer that holds samples, a heartbeat that looks at them may never end.
+    std::size_t removed = 0;
+    writer->clear_history(&removed);
     participant.impl().publisher->delete_datawriter(writer);
   }
 

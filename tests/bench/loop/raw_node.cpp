@@ -71,6 +71,11 @@ Node::Node(const Network& network) {
 
 Node::~Node() {
   for (DataReader* reader : readers_) reader->set_listener(nullptr);
+  for (const auto& [writer, readers] : writers_) {
+    // While Fast DDS 2.9.1 deletes a writer that holds samples, a heartbeat that looks at them may never end.
+    std::size_t removed = 0;
+    writer->clear_history(&removed);
+  }
   participant_->delete_contained_entities();
   DomainParticipantFactory::get_instance()->delete_participant(participant_);
 }
