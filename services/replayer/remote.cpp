@@ -20,7 +20,7 @@ Remote::Remote(dds::Participant& participant, std::function<void()> on_request)
                 {
                   const std::lock_guard lock(mutex_);
                   requests_.push_back(request);
-                  if (request.action() == msg::REPLAY_STOP) ender_ = dds::prefixOf(sample.writer);
+                  asker_ = {.prefix = dds::prefixOf(sample.writer), .since = std::chrono::steady_clock::now()};
                 }
                 on_request();
               }) {}
@@ -34,8 +34,10 @@ void Remote::sayGoodbye() {
   constexpr std::chrono::milliseconds kPatience{1000};
   {
     // An asker sees the writer of the answers before that one sees it: what was answered may still wait for the match.
+    // Who asked longer ago has the answer, or has gone.
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kPatience, [this] { return !ender_ || replies_.raw().matched().contains(*ender_); });
+    changed_.wait_until(lock, asker_.since + kPatience,
+                        [this] { return replies_.raw().matched().contains(asker_.prefix); });
   }
   replies_.raw().waitForAcknowledgments(kPatience.count());
   status_.raw().waitForAcknowledgments(kPatience.count());

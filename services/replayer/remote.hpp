@@ -1,10 +1,10 @@
 /// The replay's own topics: what operators ask, what they are answered, how it stands.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
-#include <optional>
 #include <vector>
 
 #include "dds/typed.hpp"
@@ -20,14 +20,18 @@ class Remote {
   [[nodiscard]] std::vector<msg::ReplayRequest> take();
   void answer(const msg::ReplayReply& reply) { replies_.write(reply); }
   void tell(const msg::ReplayStatus& status) { status_.write(status); }
-  /// Waits, for a second or two at most, until everybody has what was said last, also who asked for the end.
+  /// Waits, for a second or two at most, until everybody has what was said last, also who asked just before.
   void sayGoodbye();
 
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<msg::ReplayRequest> requests_;
-  std::optional<dds::GuidPrefix> ender_;  // who asked for the end
+  struct Asker {
+    dds::GuidPrefix prefix{};
+    std::chrono::steady_clock::time_point since;  // long ago: nobody
+  };
+  Asker asker_;  // who asked last
   dds::Writer<msg::ReplayStatus> status_;
   dds::Writer<msg::ReplayReply> replies_;
   dds::Reader<msg::ReplayRequest> reader_;
