@@ -89,6 +89,24 @@ std::string promisesText(const WriterQos& qos) {
   return text;
 }
 
+/// "policy: value" lines for what no reader of ours asks for; nothing for what is as it is by default.
+std::string policiesText(const WriterQos& qos) {
+  std::string text;
+  if (const auto& life = qos.m_lifespan.duration; life != eprosima::fastrtps::c_TimeInfinite) {
+    text += "lifespan_ns: " + std::to_string(life.to_ns()) + "\n";
+  }
+  if (const auto& budget = qos.m_latencyBudget.duration; budget != eprosima::fastrtps::c_TimeZero) {
+    text += "latency_budget_ns: " + std::to_string(budget.to_ns()) + "\n";
+  }
+  if (qos.m_destinationOrder.kind == BY_SOURCE_TIMESTAMP_DESTINATIONORDER_QOS) {
+    text += "destination_order: by_source_timestamp\n";
+  }
+  if (qos.m_presentation.access_scope == TOPIC_PRESENTATION_QOS) text += "presentation: topic\n";
+  if (qos.m_presentation.access_scope == GROUP_PRESENTATION_QOS) text += "presentation: group\n";
+  for (const std::string& partition : qos.m_partition.getNames()) text += "partition: " + partition + "\n";
+  return text;
+}
+
 GuidPrefix toPrefix(const rtps::GUID_t& guid) { return prefixOf(toGuid(guid)); }
 
 DomainParticipantQos participantQos(const ParticipantOptions& options, const Peer& self) {
@@ -208,7 +226,7 @@ void Participant::Impl::on_publisher_discovery(DomainParticipant*, rtps::WriterD
   writer.qos_text = std::string("reliability: ") + (writer.reliable ? "reliable" : "best_effort") +
                     "\ndurability: " + (writer.transient_local ? "transient_local" : "volatile") +
                     "\nownership: " + (writer.exclusive_ownership ? "exclusive" : "shared") +
-                    "\nkeyed: " + (writer.keyed ? "true" : "false") + "\n" + promisesText(qos);
+                    "\nkeyed: " + (writer.keyed ? "true" : "false") + "\n" + promisesText(qos) + policiesText(qos);
   {
     const std::lock_guard lock(mutex);
     writers[writer.guid] = writer;

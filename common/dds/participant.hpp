@@ -43,7 +43,7 @@ struct DiscoveredWriter {
   bool reliable = false;
   bool transient_local = false;
   std::vector<std::string> partitions;
-  std::string qos_text;  // readable, for the recording's metadata
+  std::string qos_text;  // "policy: value" lines, for the recording's metadata
 };
 
 /// Called on a DDS thread: hand it to the executor and return.

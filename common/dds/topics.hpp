@@ -62,6 +62,8 @@ inline constexpr Topic<msg::ServiceStatus>    kServiceStatus   {"service_status"
 inline constexpr Topic<msg::ServiceManifest>  kServiceManifest {"service_manifest",  "baton::msg::ServiceManifest",  Profile::kEvent};
 inline constexpr Topic<msg::Event>            kEvent           {"event",             "baton::msg::Event",            Profile::kEvent};
 inline constexpr Topic<msg::RecorderStatus>   kRecorderStatus  {"recorder_status",   "baton::msg::RecorderStatus",   Profile::kStatus};
+inline constexpr Topic<msg::RecordRequest>    kRecordRequest   {"record_request",    "baton::msg::RecordRequest",    Profile::kRequest};
+inline constexpr Topic<msg::RecordReply>      kRecordReply     {"record_reply",      "baton::msg::RecordReply",      Profile::kRequest};
 inline constexpr Topic<msg::ReplayStatus>     kReplayStatus    {"replay_status",     "baton::msg::ReplayStatus",     Profile::kStatus};
 inline constexpr Topic<msg::ReplayRequest>    kReplayRequest   {"replay_request",    "baton::msg::ReplayRequest",    Profile::kRequest};
 inline constexpr Topic<msg::ReplayReply>      kReplayReply     {"replay_reply",      "baton::msg::ReplayReply",      Profile::kRequest};

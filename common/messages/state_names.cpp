@@ -36,6 +36,8 @@ const char* toString(msg::ServiceState state) {
 const char* toString(msg::RecorderState state) {
   switch (state) {
     case msg::RECORDER_RECORDING: return "recording";
+    case msg::RECORDER_PAUSED: return "paused";
+    case msg::RECORDER_STOPPED: return "stopped";
     case msg::RECORDER_CLOSED: return "closed";
     case msg::RECORDER_FAILED: return "failed";
   }

@@ -1,6 +1,7 @@
 #include "runtime/ledger.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <utility>
 
 #include "dds/codec.hpp"
@@ -12,11 +13,11 @@ namespace baton {
 
 bool Ledger::book(Stream& booked, std::uint64_t sequence, std::span<const std::byte> payload) {
   ReceivedStream& stream = booked.second;
-  if (stream.count > 0 && sequence <= stream.last_sequence) return false;
-  if (stream.count == 0) {
+  if (sequence <= stream.last_sequence) return false;
+  if (stream.count == 0 && stream.missing == 0) {
     stream.first_sequence = sequence;
-  } else {
-    stream.missing += sequence - stream.last_sequence - 1;
+  } else if (sequence > stream.last_sequence + 1) {
+    note(booked, stream.last_sequence + 1, sequence - 1, "never came");
   }
   stream.last_sequence = sequence;
   ++stream.count;
@@ -35,6 +36,27 @@ void Ledger::read(const std::string& topic, std::span<const std::byte> payload) 
     if (status.state() == msg::SERVICE_FAILED) giveUpOn(status.name().c_str());
     if (status.state() == msg::SERVICE_READY && status.role() == "controller") expect(status.name().c_str());
   }
+}
+
+void Ledger::dropped(Stream& booked, std::uint64_t first_sequence, std::uint64_t last_sequence) {
+  ReceivedStream& stream = booked.second;
+  first_sequence = std::max(first_sequence, stream.last_sequence + 1);
+  if (last_sequence < first_sequence) return;
+  if (stream.count == 0 && stream.missing == 0) {
+    stream.first_sequence = first_sequence;
+  } else if (first_sequence > stream.last_sequence + 1) {
+    note(booked, stream.last_sequence + 1, first_sequence - 1, "never came");
+  }
+  note(booked, first_sequence, last_sequence, "came faster than it could be written");
+  dropped_ += last_sequence - first_sequence + 1;
+  stream.last_sequence = last_sequence;
+}
+
+void Ledger::note(Stream& stream, std::uint64_t first_sequence, std::uint64_t last_sequence, const char* reason) {
+  stream.second.missing += last_sequence - first_sequence + 1;
+  // Of a status only the latest word counts, and what it replaced is not sent again.
+  if (dds::isStatusTopic(stream.first.first) || gaps_.size() == kMaxGaps) return;
+  gaps_.push_back({stream.first, first_sequence, last_sequence, reason});
 }
 
 void Ledger::addManifest(const msg::ServiceManifest& manifest) { manifests_.push_back(manifest); }
@@ -56,6 +78,7 @@ std::vector<std::string> Ledger::unvouched() const {
   }
   std::vector<std::string> result;
   for (const auto& [key, stream] : streams_) {
+    if (stream.count + stream.missing == 0 || left_out_.contains(key.first)) continue;
     if (counted.contains(key.first) && !vouched.contains(key)) {
       result.push_back(key.first + ": a writer that ended without a manifest, nobody vouches for its " +
                        std::to_string(stream.count) + " samples");
@@ -76,8 +99,13 @@ std::vector<std::string> Ledger::problemsOf(const msg::ServiceManifest& manifest
   std::vector<std::string> result;
   for (const msg::StreamManifest& sent : manifest.streams()) {
     const std::string topic = sent.topic().c_str();
+    if (left_out_.contains(topic)) continue;
     const auto found = streams_.find({topic, dds::Guid{sent.writer()}});
-    const ReceivedStream received = found == streams_.end() ? ReceivedStream{} : found->second;
+    ReceivedStream received = found == streams_.end() ? ReceivedStream{} : found->second;
+    if (const auto told = testimonies_.find({topic, dds::Guid{sent.writer()}}); told != testimonies_.end()) {
+      received.count = told->second.count;
+      received.stream_hash = told->second.hash;
+    }
     const std::string what = topic + " of " + manifest.name().c_str();
     if (received.count != sent.count()) {
       result.push_back(what + ": " + std::to_string(sent.count()) + " samples sent, " + std::to_string(received.count) +
@@ -90,6 +118,7 @@ std::vector<std::string> Ledger::problemsOf(const msg::ServiceManifest& manifest
 }
 
 std::vector<std::string> Ledger::problems() const {
+  if (is_excerpt_) return problemsSoFar();
   std::vector<std::string> result;
   for (const std::string& service : services_) {
     if (!hasManifestOf(service)) result.push_back(service + " sent no manifest");
@@ -98,7 +127,27 @@ std::vector<std::string> Ledger::problems() const {
     for (std::string& problem : problemsOf(manifest)) result.push_back(std::move(problem));
   }
   for (std::string& problem : unvouched()) result.push_back(std::move(problem));
+  std::set<Key> vouched;
+  for (const msg::ServiceManifest& manifest : manifests_) {
+    for (const msg::StreamManifest& sent : manifest.streams())
+      vouched.insert({sent.topic().c_str(), dds::Guid{sent.writer()}});
+  }
+  for (std::string& problem : gapsBut(vouched)) result.push_back(std::move(problem));
+  return result;
+}
+
+std::vector<std::string> Ledger::problemsSoFar() const { return gapsBut({}); }
+
+/// What is missing of streams other than these, of which is known already; and what concerns none in particular.
+std::vector<std::string> Ledger::gapsBut(const std::set<Key>& known) const {
+  std::vector<std::string> result(unrecordable_.begin(), unrecordable_.end());
   if (dropped_ > 0) result.push_back(std::to_string(dropped_) + " samples came faster than they could be written");
+  for (const auto& [key, stream] : streams_) {
+    if (stream.missing == 0 || dds::isStatusTopic(key.first) || known.contains(key) || left_out_.contains(key.first))
+      continue;
+    result.push_back(key.first + " of " + dds::toString(key.second) + ": " + std::to_string(stream.missing) +
+                     " samples are missing");
+  }
   return result;
 }
 
@@ -112,33 +161,87 @@ bool Ledger::isSettled() const {
   return true;
 }
 
+nlohmann::ordered_json Ledger::rowOf(const Stream& booked) const {
+  const auto& [key, stream] = booked;
+  nlohmann::ordered_json row{{"topic", key.first},
+                             {"writer", dds::toString(key.second)},
+                             {"first_sequence", stream.first_sequence},
+                             {"last_sequence", stream.last_sequence},
+                             {"count", stream.count},
+                             {"missing", stream.missing},
+                             {"stream_hash", std::to_string(stream.stream_hash)}};
+  for (const msg::ServiceManifest& manifest : manifests_) {
+    for (const msg::StreamManifest& sent : manifest.streams()) {
+      if (key != Key{sent.topic().c_str(), dds::Guid{sent.writer()}}) continue;
+      row["service"] = manifest.name().c_str();
+      row["sent"] = sent.count();
+      row["sent_hash"] = std::to_string(sent.stream_hash());
+    }
+  }
+  return row;
+}
+
 std::string Ledger::certificate() const {
   nlohmann::ordered_json streams = nlohmann::ordered_json::array();
-  for (const auto& [key, stream] : streams_) {
-    nlohmann::ordered_json row{{"topic", key.first},
-                               {"writer", dds::toString(key.second)},
-                               {"first_sequence", stream.first_sequence},
-                               {"last_sequence", stream.last_sequence},
-                               {"count", stream.count},
-                               {"missing", stream.missing},
-                               {"stream_hash", std::to_string(stream.stream_hash)}};
-    for (const msg::ServiceManifest& manifest : manifests_) {
-      for (const msg::StreamManifest& sent : manifest.streams()) {
-        if (key != Key{sent.topic().c_str(), dds::Guid{sent.writer()}}) continue;
-        row["service"] = manifest.name().c_str();
-        row["sent"] = sent.count();
-        row["sent_hash"] = std::to_string(sent.stream_hash());
-      }
-    }
-    streams.push_back(std::move(row));
-  }
+  for (const Stream& stream : streams_) streams.push_back(rowOf(stream));
   const std::vector<std::string> found = problems();
   const nlohmann::ordered_json text{{"complete", found.empty()}, {"problems", found}, {"streams", streams}};
   return toText(text);
 }
 
+namespace {
+using Json = nlohmann::json;
+
+/// Calls back with each row of a certificate and its stream; what cannot be read is left to disagreements().
+template <class Callback>
+void forEachRow(const std::string& certificate, const Callback& callback) {
+  const Json json = Json::parse(certificate, nullptr, false);
+  if (!json.is_object()) return;
+  try {
+    for (const Json& row : json.at("streams")) {
+      const auto writer = dds::guidCalled(row.at("writer").get<std::string>());
+      if (writer) callback(row, Ledger::Key{row.at("topic").get<std::string>(), *writer});
+    }
+  } catch (const std::exception&) {
+    return;
+  }
+}
+
+std::uint64_t numberIn(const Json& row, const char* key) {
+  const std::string text = row.value(key, "0");
+  std::uint64_t number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+}  // namespace
+
+void Ledger::beginAt(const std::string& certificate) {
+  forEachRow(certificate, [this](const Json& row, const Key& key) {
+    if (row.contains("hash_seed")) streamOf(key).second.stream_hash = numberIn(row, "hash_seed");
+  });
+}
+
+void Ledger::excuse(const std::string& certificate) {
+  const Json json = Json::parse(certificate, nullptr, false);
+  if (!json.is_object()) return;
+  try {
+    for (const Json& topic : json.value("left_out", Json::array())) leaveOut(topic.get<std::string>());
+    is_excerpt_ = !json.value("run_is_over", true) || left_out_.contains(dds::topics::kServiceManifest.name);
+  } catch (const Json::exception&) {
+    return;
+  }
+  forEachRow(certificate, [this](const Json& row, const Key& key) {
+    if (row.contains("received")) {
+      testimonies_[key] = {row.at("received").get<std::uint64_t>(), numberIn(row, "received_hash")};
+    }
+    if (const auto found = streams_.find(key); found != streams_.end()) {
+      found->second.missing -= std::min(found->second.missing, row.value("left_out", std::uint64_t{0}));
+    }
+  });
+}
+
 std::vector<std::string> Ledger::disagreements(const std::string& certificate_text) const {
-  using Json = nlohmann::json;
   std::vector<std::string> result;
   const auto rowsOf = [](const Json& certificate) {
     std::map<std::pair<std::string, std::string>, Json> rows;
@@ -160,7 +263,7 @@ std::vector<std::string> Ledger::disagreements(const std::string& certificate_te
       }
     }
     for (const auto& [key, row] : their_rows) {
-      if (!row.is_null())
+      if (!row.is_null() && row.value("count", std::uint64_t{0}) > 0)
         result.push_back("the certificate knows " + key.first + " of writer " + key.second + ", which is not there");
     }
     if (theirs.at("complete").get<bool>() && !isComplete())

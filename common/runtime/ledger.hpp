@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <span>
 #include <string>
@@ -21,7 +22,7 @@ struct ReceivedStream {
   std::uint64_t first_sequence = 0;
   std::uint64_t last_sequence = 0;
   std::uint64_t count = 0;
-  std::uint64_t missing = 0;  // holes between first and last
+  std::uint64_t missing = 0;  // holes between first and last, and what found no room
   std::uint64_t stream_hash = 0;
 };
 
@@ -36,18 +37,31 @@ class Ledger {
   using Stream = std::map<Key, ReceivedStream>::value_type;
   [[nodiscard]] Stream& streamOf(const Key& key) { return *streams_.try_emplace(key).first; }
 
+  /// Samples of a stream that never came, or came and found no room.
+  struct Gap {
+    Key stream;
+    std::uint64_t first_sequence = 0;
+    std::uint64_t last_sequence = 0;
+    std::string reason;
+  };
+  static constexpr std::size_t kMaxGaps = 1000;  // listed; the rest is counted
+
   /// Books a sample; what manifests and the status of services say of who vouches for what is noted. Returns false for
   /// one that came already (it is not to be recorded again).
   bool book(Stream& booked, std::uint64_t sequence, std::span<const std::byte> payload);
   bool book(const Key& key, std::uint64_t sequence, std::span<const std::byte> payload) {
     return book(streamOf(key), sequence, payload);
   }
+  /// These came and found no room.
+  void dropped(Stream& stream, std::uint64_t first_sequence, std::uint64_t last_sequence);
+  /// Nothing is asked about this topic: it is left out on purpose.
+  void leaveOut(const std::string& topic) { left_out_.insert(topic); }
+  /// Something that ought to be in the recording cannot be.
+  void cannotRecord(const std::string& what) { unrecordable_.insert(what); }
   void addManifest(const msg::ServiceManifest& manifest);
 
   /// Another service has joined, of whom a manifest is to be expected.
   void expect(const std::string& service) { services_.insert(service); }
-  /// So many samples came and found no room.
-  void dropped(std::uint64_t count) { dropped_ = count; }
   /// The service has failed: its manifest will not come.
   void giveUpOn(const std::string& service) { given_up_.insert(service); }
   /// Nothing more is to be expected: every manifest that still can come has, and every stream they name is here, whole.
@@ -56,25 +70,47 @@ class Ledger {
   [[nodiscard]] bool isComplete() const { return problems().empty(); }
   /// One sentence for each thing that is missing.
   [[nodiscard]] std::vector<std::string> problems() const;
+  /// The same in the middle of a run, when nobody has said what was sent: what came has to be without gaps.
+  [[nodiscard]] std::vector<std::string> problemsSoFar() const;
   /// The certificate as JSON text: verdict, problems, one row a stream.
   [[nodiscard]] std::string certificate() const;
+  /// What a certificate says is not in the files on purpose is not missed in them: topics, pauses, what came before
+  /// they begin or after they end. Of what cannot be counted again it says what came, and is believed.
+  void excuse(const std::string& certificate);
+  /// The sum over a stream's payloads begins with this one: what came before is gone, on purpose.
+  void beginAt(const std::string& certificate);
   /// One sentence for each thing that this certificate says otherwise than certificate().
   [[nodiscard]] std::vector<std::string> disagreements(const std::string& certificate) const;
+  /// A row of it.
+  [[nodiscard]] nlohmann::ordered_json rowOf(const Stream& stream) const;
   [[nodiscard]] const std::map<Key, ReceivedStream>& streams() const { return streams_; }
+  [[nodiscard]] const std::vector<Gap>& gaps() const { return gaps_; }
+  [[nodiscard]] const std::set<std::string>& leftOut() const { return left_out_; }
   [[nodiscard]] std::size_t manifests() const { return manifests_.size(); }
   /// Samples that never came, on topics of which none may be missing: of a status only the latest word counts.
   [[nodiscard]] std::uint64_t missing() const;
 
  private:
   void read(const std::string& topic, std::span<const std::byte> payload);
+  void note(Stream& stream, std::uint64_t first_sequence, std::uint64_t last_sequence, const char* reason);
   [[nodiscard]] bool hasManifestOf(const std::string& service) const;
   [[nodiscard]] std::vector<std::string> unvouched() const;
   [[nodiscard]] std::vector<std::string> problemsOf(const msg::ServiceManifest& manifest) const;
+  [[nodiscard]] std::vector<std::string> gapsBut(const std::set<Key>& known) const;
 
   std::set<std::string> services_;
   std::set<std::string> given_up_;
   std::map<Key, ReceivedStream> streams_;
+  std::vector<Gap> gaps_;
   std::uint64_t dropped_ = 0;
+  std::set<std::string> left_out_;
+  std::set<std::string> unrecordable_;
+  struct Testimony {
+    std::uint64_t count = 0;
+    std::uint64_t hash = 0;
+  };
+  std::map<Key, Testimony> testimonies_;         // of a certificate, on what came and is not in the files
+  bool is_excerpt_ = false;                      // nobody in the files says what was sent
   std::vector<msg::ServiceManifest> manifests_;  // one a process: a service that was started again has sent two
 };
 

@@ -32,6 +32,7 @@ int runService(int argc, char** argv, const std::string& role, const std::functi
     setUpLog(options.name);
     Scenario scenario = loadScenario(options.scenario_file, options.robot_file);
     scenario.recording.enabled = scenario.recording.enabled && options.recording;
+    scenario.recording.starts_stopped = scenario.recording.starts_stopped || options.record_later;
     // DDS's threads inherit it.
     const std::vector<std::string> refusals = applyScheduling(options.scheduling, scenario.mode == SimMode::kLockstep);
     Service service(options, std::move(scenario));

@@ -73,7 +73,19 @@ struct BatonConfig {
 
 struct RecordingConfig {
   bool enabled = true;
-  std::string compression = "zstd";  // none, lz4, zstd
+  std::string compression = "zstd";                  // none, lz4, zstd
+  int level = 0;                                     // of the compression; 0: the library's own default
+  std::size_t chunk_bytes = std::size_t{256} << 10;  // of larger ones the file gains 1 %, the process 2 MB
+  bool starts_stopped = false;                       // waits for `record start`
+  std::vector<std::string> topics;                   // patterns; empty: all topics
+  std::vector<std::string> except;                   // patterns of those that are left out
+  std::uint64_t split_bytes = 0;                     // a part that has grown to this is followed by another; 0: never
+  std::uint64_t split_steps = 0;                     // likewise, by steps of the run
+  std::uint64_t ring_steps = 0;  // kept in memory alone, until they are asked for or the run ends; 0: no ring
+  std::uint64_t ring_bytes = 256'000'000;
+  std::uint64_t max_bytes = 0;       // of all parts together; 0: no limit
+  bool drops_oldest = false;         // when they are reached, the oldest part goes; else the recording ends
+  std::uint64_t min_free_bytes = 0;  // below this on the disk, likewise
   std::uint64_t credit_steps = 256;  // lockstep: how far the plant may run past the recorder
   std::uint64_t checkpoint_steps =
       0;                     // every so many steps all parts save their state, for branches; 0: at the end alone

@@ -185,7 +185,9 @@ RecordingConfig readRecording(const YamlMap& map, const Scenario& scenario) {
   recording.checkpoint_steps = std::max<std::uint64_t>(1, std::llround(kCheckpoint_s / scenario.stepSeconds()));
   const auto node = map.find("recording");
   if (!node) return recording;
-  const YamlMap given = node->map({"enabled", "compression", "credit_steps", "checkpoint_s", "sync"});
+  std::vector<std::string> keys{"enabled", "compression", "credit_steps", "checkpoint_s", "sync"};
+  keys.insert(keys.end(), recordingShapeKeys().begin(), recordingShapeKeys().end());
+  const YamlMap given = node->map(keys);
   if (const auto every = given.find("checkpoint_s")) recording.checkpoint_steps = readSteps(*every, scenario);
   recording.enabled = given.booleanOr("enabled", recording.enabled);
   if (const auto word = given.find("compression")) {
@@ -193,6 +195,7 @@ RecordingConfig readRecording(const YamlMap& map, const Scenario& scenario) {
   }
   recording.credit_steps = static_cast<std::uint64_t>(given.integerOr("credit_steps", 16, 512, 256));
   if (const auto sync = given.find("sync")) readSync(*sync, recording);
+  readRecordingShape(given, scenario, recording);
   return recording;
 }
 

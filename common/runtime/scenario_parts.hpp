@@ -49,6 +49,10 @@ void readBaton(const YamlMap& map, Scenario& scenario);
 void readFailures(const YamlMap& map, Scenario& scenario);
 void readSwaps(const YamlMap& map, Scenario& scenario);
 void readStops(const YamlMap& map, Scenario& scenario);
+/// What the recording is to hold, and how it is kept on the disk: from the scenario's `recording`.
+void readRecordingShape(const YamlMap& map, const Scenario& scenario, RecordingConfig& recording);
+/// The keys of it.
+[[nodiscard]] const std::vector<std::string>& recordingShapeKeys();
 /// The faults that are wanted, likewise.
 void readFaults(const YamlMap& map, Scenario& scenario);
 

@@ -35,7 +35,10 @@ bool parseServiceOptions(int argc, char** argv, const std::string& role, Service
   }
   if (role == kPlantName)
     app.add_flag("--paused", options.starts_paused, "wait for `sim resume` before the first step");
-  if (role == "recorder") app.add_option("--out", options.out, "file to write (MCAP)")->required();
+  if (role == "recorder") {
+    app.add_option("--out", options.out, "file to write (MCAP)")->required();
+    app.add_flag("--record-later", options.record_later, "wait for `record start` before the first sample is kept");
+  }
   if (!parseCommandLine(app, argc, argv)) return false;
   options.recording = !no_recording;
   return true;
@@ -53,7 +56,10 @@ std::vector<std::string> toArguments(const ServiceOptions& options) {
   if (options.starts_paused && options.role == kPlantName) arguments.emplace_back("--paused");
   if (!options.recording) arguments.emplace_back("--no-recording");
   if (options.role == "controller") arguments.insert(arguments.end(), {"--name", options.name, "--law", options.law});
-  if (options.role == "recorder") arguments.insert(arguments.end(), {"--out", options.out});
+  if (options.role == "recorder") {
+    arguments.insert(arguments.end(), {"--out", options.out});
+    if (options.record_later) arguments.emplace_back("--record-later");
+  }
   return arguments;
 }
 

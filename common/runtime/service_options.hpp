@@ -19,9 +19,10 @@ struct ServiceOptions {
   std::string run;           // this run of the cell
   int domain = 0;
   dds::Transport transport = dds::Transport::kUdp;
-  bool recording = true;  // whether a recorder takes part
-  std::string law;        // controller: must agree with the scenario when given
-  std::string out;        // recorder: file to write
+  bool recording = true;      // whether a recorder takes part
+  bool record_later = false;  // it waits for a request to begin
+  std::string law;            // controller: must agree with the scenario when given
+  std::string out;            // recorder: file to write
   Scheduling scheduling;
   std::string checkpoint;      // file to start from instead of step 0; empty: none
   bool starts_paused = false;  // plant: waits for a request before its first step

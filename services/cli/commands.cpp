@@ -13,6 +13,7 @@
 #include "operate_commands.hpp"
 #include "param_command.hpp"
 #include "player_command.hpp"
+#include "record_command.hpp"
 #include "replay_command.hpp"
 #include "rerun_command.hpp"
 #include "run_commands.hpp"
@@ -28,6 +29,7 @@ void addCommands(CLI::App& app, ExitCode& exit_code) {
   addControllerCommand(app, exit_code);
   addOperateCommands(app, exit_code);
   addParamCommand(app, exit_code);
+  addRecordCommand(app, exit_code);
   addReplayCommand(app, exit_code);
   addPlayerCommand(app, exit_code);
   addBagCommand(app, exit_code);

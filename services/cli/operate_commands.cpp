@@ -119,30 +119,6 @@ void sim(const CellTarget& target, const msg::SimRequest& what, const std::optio
   }
 }
 
-void recordStatus(const CellTarget& target, ExitCode& exit_code) {
-  CellClient client(CellClient::find(target.domain, target.cell));
-  if (client.info().recording.empty()) throw UnavailableError("run " + client.info().run + " has no recorder");
-  const auto status = client.latest(dds::topics::kRecorderStatus);
-  if (!status) throw UnavailableError("the recorder says nothing; see `baton logs recorder`");
-  exit_code = status->state() == msg::RECORDER_FAILED ? ExitCode::kFailed : ExitCode::kOk;
-  if (target.json) {
-    std::cout << toText(Json{{"state", toString(status->state())},
-                             {"path", status->path().c_str()},
-                             {"messages", status->messages()},
-                             {"bytes", status->bytes()},
-                             {"lost", status->lost()},
-                             {"acknowledged_step", status->acknowledged_step()},
-                             {"complete", status->complete()},
-                             {"text", status->text().c_str()}})
-              << '\n';
-  } else {
-    std::printf("%s %s\n%llu messages, %.2f MB in the file, %llu lost, every loop sample up to step %llu\n%s",
-                toString(status->state()), status->path().c_str(), ull{status->messages()},
-                static_cast<double>(status->bytes()) / 1e6, ull{status->lost()}, ull{status->acknowledged_step()},
-                status->text().size() > 0 ? (std::string(status->text().c_str()) + "\n").c_str() : "");
-  }
-}
-
 void addSimCommands(CLI::App& app, const std::shared_ptr<CellTarget>& target, ExitCode& exit_code) {
   CLI::App* command = app.add_subcommand("sim", "pause, resume, step, change the rate, stop");
   command->require_subcommand(1);
@@ -182,11 +158,6 @@ void addOperateCommands(CLI::App& app, ExitCode& exit_code) {
   const auto target = std::make_shared<CellTarget>();
   addCellCommand(app, *target, "status", "how the run and its services stand")->callback([=] { status(*target); });
   addSimCommands(app, target, exit_code);
-  CLI::App* record = app.add_subcommand("record", "the recorder of the run");
-  record->require_subcommand(1);
-  addCellCommand(*record, *target, "status", "what has been recorded so far")->callback([=, &exit_code] {
-    recordStatus(*target, exit_code);
-  });
 }
 
 }  // namespace baton

@@ -18,6 +18,11 @@ namespace fs = std::filesystem;
 
 std::string listText(const std::vector<std::string>& entries) { return fmt::format("[{}]", fmt::join(entries, ", ")); }
 
+/// All of the repetition, in one file, whatever was wanted of the original.
+std::string wholeRecording(const Scenario& scenario) {
+  return "{checkpoint_s: " + secondsText(scenario.recording.checkpoint_steps, scenario) + "}";
+}
+
 std::string failuresText(const RecordedRun& run) {
   std::vector<std::string> entries;
   for (const PlannedFailure& failure : failuresOf(run)) {
@@ -260,6 +265,7 @@ std::string repeatingScenario(const RecordedRun& run, std::uint64_t end_step) {
                                                             {"duration_s", secondsText(end_step, run.scenario)},
                                                             {"rate", "max"},
                                                             {"late", "{policy: wait}"},
+                                                            {"recording", wholeRecording(run.scenario)},
                                                             {"swaps", swapsText(swaps, run.scenario)},
                                                             {"failures", failuresText(run)},
                                                             {"stops", stopsText(run)}});

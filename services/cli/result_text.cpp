@@ -65,7 +65,7 @@ void printResult(const nlohmann::ordered_json& result) {
     std::printf("recording   %s\n            %.2f MB, %llu messages, %s\n",
                 recording.at("path").get<std::string>().c_str(), recording.at("bytes").get<double>() / 1e6,
                 static_cast<unsigned long long>(recording.at("messages")),
-                recording.at("complete").get<bool>() ? "complete" : recording.at("summary").get<std::string>().c_str());
+                recording.at("summary").get<std::string>().c_str());
   }
   if (result.contains("folder")) std::printf("logs        %s\n", result.at("folder").get<std::string>().c_str());
 }

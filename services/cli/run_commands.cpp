@@ -21,7 +21,19 @@
 namespace baton {
 namespace {
 
-std::string progressText(const std::optional<msg::SimStatus>& status) {
+/// "  2.1 MB recorded, 3 lost".
+std::string recordedText(const msg::RecorderStatus& status) {
+  std::array<char, 80> text{};
+  std::snprintf(text.data(), text.size(), "  %.1f MB %s", static_cast<double>(status.bytes()) * 1e-6,
+                status.ring() ? "in the ring" : "recorded");
+  std::string result = text.data();
+  if (status.state() == msg::RECORDER_PAUSED) result += ", paused";
+  if (status.lost() > 0) result += ", " + std::to_string(status.lost()) + " lost";
+  return result;
+}
+
+std::string progressText(const RunProgress& progress) {
+  const std::optional<msg::SimStatus>& status = progress.sim;
   if (!status) return "starting";
   std::array<char, 200> text{};
   const double time_s = static_cast<double>(status->time_ns()) * 1e-9;
@@ -40,7 +52,7 @@ std::string progressText(const std::optional<msg::SimStatus>& status) {
                     left_s);
     }
   }
-  return text.data();
+  return text.data() + (progress.recorder ? recordedText(*progress.recorder) : "");
 }
 
 void addRunOptions(CLI::App& command, RunRequest& request) {
@@ -51,6 +63,8 @@ void addRunOptions(CLI::App& command, RunRequest& request) {
   command.add_option("--out", request.out, "file to record to (default: in the run's folder)");
   command.add_flag("--overwrite", request.overwrite, "replace the file --out names");
   command.add_flag("--no-recording", request.no_recording, "run without a recorder");
+  command.add_flag("--record-later", request.record_later, "record nothing before `baton record start`")
+      ->excludes("--no-recording");
   addScheduling(command, request.scheduling);
   command
       .add_option("--restarts", request.restarts, "how often a part that dies is started again; not plant and recorder")
@@ -97,7 +111,7 @@ nlohmann::ordered_json runInProcess(const std::string& scenario_name) {
     status.step(run.steps());
     status.time_ns(stampOf(run.steps(), scenario.step_ns).time_ns);
     status.elapsed_s(secondsSince(started));
-    line.show(progressText(status));
+    line.show(progressText({.sim = status, .recorder = {}}));
   }
   const double elapsed_s = secondsSince(started);
   const double sim_time_s = static_cast<double>(run.steps()) * scenario.stepSeconds();
@@ -226,7 +240,8 @@ void addRunCommands(CLI::App& app, ExitCode& exit_code) {
   CLI::Option* in_process_option = run_command->add_flag(
       "--in-process", *in_process,
       "all parts in this process, without DDS and recording, as fast as possible: the same bytes, the same hash");
-  for (const char* other : {"--out", "--overwrite", "--no-recording", "--restarts", "--fifo", "--cpus"}) {
+  for (const char* other :
+       {"--out", "--overwrite", "--no-recording", "--record-later", "--restarts", "--fifo", "--cpus"}) {
     in_process_option->excludes(other);
   }
   run_command->callback([=, &exit_code] {

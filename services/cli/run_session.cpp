@@ -21,6 +21,7 @@
 #include "cell_client.hpp"
 #include "runtime/log.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/recording_parts.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/signals.hpp"
 
@@ -84,7 +85,8 @@ pid_t launch(const fs::path& program, const std::vector<std::string>& arguments,
   return pid;
 }
 
-fs::path checkedOut(const RunRequest& request) {
+/// The recording and, where it is split, its other parts: what is left of an earlier one would be in the way.
+fs::path checkedOut(const RunRequest& request, const RecordingConfig& recording) {
   fs::path out = fs::absolute(request.out);
   if (!fs::is_directory(out.parent_path())) {
     throw UsageError("--out " + request.out + ": expected a file in an existing folder, and " +
@@ -93,11 +95,13 @@ fs::path checkedOut(const RunRequest& request) {
   if (fs::exists(out) && !fs::is_regular_file(out)) {
     throw UsageError("--out " + request.out + ": expected a file, and it is a folder or a device");
   }
-  if (fs::exists(out)) {
-    if (!request.overwrite)
-      throw UsageError("--out " + request.out + " exists: choose another name or give --overwrite");
-    fs::remove(out);
+  std::vector<fs::path> there;
+  if (recording.split_bytes > 0 || recording.split_steps > 0) there = furtherPartsOf(out);
+  if (fs::exists(out)) there.insert(there.begin(), out);
+  if (!there.empty() && !request.overwrite) {
+    throw UsageError("--out " + there.front().string() + " exists: choose another name or give --overwrite");
   }
+  for (const fs::path& file : there) fs::remove(file);
   return out;
 }
 
@@ -121,7 +125,7 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
   if (!is_recorded && !request.out.empty()) {
     throw UsageError("--out " + request.out + ": the scenario or --no-recording says not to record");
   }
-  if (!request.out.empty()) info_.recording = checkedOut(request).string();
+  if (!request.out.empty()) info_.recording = checkedOut(request, scenario.recording).string();
   info_.folder = runFolder(info_.run).string();  // nothing is refused from here on
   if (is_recorded && request.out.empty()) info_.recording = info_.folder + "/" + scenario.name + ".mcap";
 
@@ -134,6 +138,7 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
   if (!request.checkpoint.empty()) arguments.insert(arguments.end(), {"--checkpoint", request.checkpoint});
   for (std::string& argument : toArguments(request.scheduling)) arguments.push_back(std::move(argument));
   if (request.paused) arguments.emplace_back("--paused");
+  if (request.record_later) arguments.emplace_back("--record-later");
   if (info_.recording.empty()) {
     arguments.emplace_back("--no-recording");
   } else {
@@ -142,29 +147,34 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
   info_.supervisor_pid = launch(siblingProgram("baton-supervisor"), arguments, logFile(), attached);
 }
 
-std::optional<ExitCode> RunSession::follow(const std::function<void(const std::optional<msg::SimStatus>&)>& progress,
+std::optional<ExitCode> RunSession::follow(const std::function<void(const RunProgress&)>& progress,
                                            const std::function<bool(const msg::SimStatus&)>& until) {
   std::mutex mutex;
-  std::optional<msg::SimStatus> status;
+  RunProgress latest;
   dds::Participant participant({.domain = info_.domain,
                                 .partition = info_.cell + "/" + info_.run,
                                 .cell = info_.cell,
                                 .run = info_.run,
                                 .service = "operator-" + std::to_string(getpid()),
                                 .transport = info_.transport});
-  const dds::Reader<msg::SimStatus> reader(participant, dds::topics::kSimStatus,
-                                           [&](const msg::SimStatus& message, const dds::RawSample&) {
-                                             const std::lock_guard lock(mutex);
-                                             status = message;
-                                           });
+  const dds::Reader<msg::SimStatus> sim(participant, dds::topics::kSimStatus,
+                                        [&](const msg::SimStatus& message, const dds::RawSample&) {
+                                          const std::lock_guard lock(mutex);
+                                          latest.sim = message;
+                                        });
+  const dds::Reader<msg::RecorderStatus> recorder(participant, dds::topics::kRecorderStatus,
+                                                  [&](const msg::RecorderStatus& message, const dds::RawSample&) {
+                                                    const std::lock_guard lock(mutex);
+                                                    latest.recorder = message;
+                                                  });
   int passed_on = 0;
   for (;;) {
     int how = 0;
     const pid_t ended = waitpid(info_.supervisor_pid, &how, WNOHANG);
-    std::optional<msg::SimStatus> now;
+    RunProgress now;
     {
       const std::lock_guard lock(mutex);
-      now = status;
+      now = latest;
     }
     if (ended == info_.supervisor_pid) {
       progress(now);
@@ -175,7 +185,7 @@ std::optional<ExitCode> RunSession::follow(const std::function<void(const std::o
       kill(info_.supervisor_pid, SIGTERM);
     }
     progress(now);
-    if (now && until(*now)) return std::nullopt;
+    if (now.sim && until(*now.sim)) return std::nullopt;
     usleep(50'000);  // how often a person sees progress
   }
 }

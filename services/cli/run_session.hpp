@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "dds/types.hpp"
+#include "msg/record.h"
 #include "msg/sim.h"
 #include "runtime/cell.hpp"
 #include "runtime/scheduling.hpp"
@@ -22,11 +23,18 @@ struct RunRequest {
   dds::Transport transport = dds::Transport::kUdp;
   std::string out;  // recording; empty: in the run's folder
   bool no_recording = false;
-  bool overwrite = false;  // replace `out`
+  bool record_later = false;  // the recorder waits for a request
+  bool overwrite = false;     // replace `out`
   int restarts = 0;
   std::string checkpoint;  // to go on from; empty: the scenario's start
   Scheduling scheduling;
   bool paused = false;  // waits for a request before its first step
+};
+
+/// The latest words of a run, as far as there are some.
+struct RunProgress {
+  std::optional<msg::SimStatus> sim;
+  std::optional<msg::RecorderStatus> recorder;
 };
 
 /// A supervisor's process. Attached, it ends with this one; detached, it lives on in the background.
@@ -40,9 +48,9 @@ class RunSession {
   RunSession& operator=(const RunSession&) = delete;
 
   /// Follows the run until `until` says so or the supervisor ends. Ctrl-C is passed on to the supervisor, whose orderly
-  /// end is waited for. `progress` is called several times a second with the plant's latest word, if there is one.
+  /// end is waited for. `progress` is called several times a second.
   /// Returns the supervisor's exit code, or nothing when `until` ended it.
-  std::optional<ExitCode> follow(const std::function<void(const std::optional<msg::SimStatus>&)>& progress,
+  std::optional<ExitCode> follow(const std::function<void(const RunProgress&)>& progress,
                                  const std::function<bool(const msg::SimStatus&)>& until);
 
   /// result.json, once the supervisor has ended. Throws UnavailableError with the end of its log when there is none.

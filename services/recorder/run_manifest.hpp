@@ -1,12 +1,13 @@
-/// What a recording says about the run it is of, as MCAP metadata.
+/// What a recording says about the run it is of.
 #pragma once
 
-#include "mcap/records.hpp"
+#include "recording.hpp"
 #include "runtime/service_options.hpp"
 
 namespace baton {
 
-/// Scenario, robot, versions, hash of the IDL, host: strings by name.
-[[nodiscard]] mcap::StringMap runManifest(const ServiceOptions& options, const Scenario& scenario);
+/// Scenario, robot, versions, hash of the IDL, seeds, host: strings by name; and scenario, robot and checkpoint as
+/// files.
+[[nodiscard]] Origin originOf(const ServiceOptions& options, const Scenario& scenario);
 
 }  // namespace baton

@@ -11,7 +11,11 @@ bool SampleQueue::push(std::uint32_t topic, const dds::RawSample& sample) {
   {
     const std::lock_guard lock(mutex_);
     if (is_closed_) return true;  // too late to matter
-    if (pending_.payloads.size() + sample.payload.size() > max_bytes_) return false;
+    is_full_ = is_full_ || pending_.payloads.size() + sample.payload.size() > max_bytes_;
+    if (is_full_) {
+      drop(topic, sample);
+      return false;
+    }
     last_log_time_ns_ = std::max(last_log_time_ns_, std::int64_t{std::chrono::nanoseconds(now).count()});
     pending_.entries.push_back({.topic = topic,
                                 .sequence = sample.sequence,
@@ -27,13 +31,29 @@ bool SampleQueue::push(std::uint32_t topic, const dds::RawSample& sample) {
   return true;
 }
 
+void SampleQueue::drop(std::uint32_t topic, const dds::RawSample& sample) {
+  for (Drop& one : pending_.drops) {
+    if (one.topic != topic || one.writer != sample.writer) continue;
+    one.last_sequence = sample.sequence;
+    return;
+  }
+  pending_.drops.push_back({topic, sample.writer, sample.sequence, sample.sequence});
+}
+
+SampleQueue::Depth SampleQueue::depth() {
+  const std::lock_guard lock(mutex_);
+  return {pending_.entries.size(), pending_.payloads.size()};
+}
+
 bool SampleQueue::take(Batch& batch, std::chrono::milliseconds timeout) {
   batch.entries.clear();
   batch.payloads.clear();
+  batch.drops.clear();
   std::unique_lock lock(mutex_);
   wake_.wait_for(lock, timeout, [this] { return is_closed_ || pending_.entries.size() >= wake_entries_; });
   std::swap(batch, pending_);
-  return !is_closed_ || !batch.entries.empty();
+  is_full_ = false;
+  return !is_closed_ || !batch.entries.empty() || !batch.drops.empty();
 }
 
 void SampleQueue::close() {

@@ -25,9 +25,17 @@ class SampleQueue {
     std::size_t offset = 0;  // of the payload in Batch::payloads
     std::size_t size = 0;
   };
+  /// Samples of one writer that found no room, after all the entries of their batch.
+  struct Drop {
+    std::uint32_t topic = 0;
+    dds::Guid writer;
+    std::uint64_t first_sequence = 0;
+    std::uint64_t last_sequence = 0;
+  };
   struct Batch {
     std::vector<Entry> entries;
     std::vector<std::byte> payloads;
+    std::vector<Drop> drops;
     [[nodiscard]] std::span<const std::byte> payload(const Entry& entry) const {
       return std::span(payloads).subspan(entry.offset, entry.size);
     }
@@ -37,8 +45,9 @@ class SampleQueue {
   /// writer before its time.
   SampleQueue(std::size_t max_bytes, std::size_t wake_entries) : max_bytes_(max_bytes), wake_entries_(wake_entries) {}
 
-  /// Returns false when the queue is full and the sample is dropped; once closed, it takes no notice of samples. The
-  /// log time is stamped here, at one place, and never decreases.
+  /// Returns false when the queue is full and the sample is dropped, and with it all that follow until the next take():
+  /// what is missing of a writer then lies in one piece. Once closed, it takes no notice of samples. The log time is
+  /// stamped here, at one place, and never decreases.
   bool push(std::uint32_t topic, const dds::RawSample& sample);
 
   /// Waits for samples, at most `timeout`, and moves them to `batch` (emptied first). Returns false when the queue is
@@ -47,12 +56,22 @@ class SampleQueue {
 
   void close();
 
+  /// Samples and payload bytes that wait.
+  struct Depth {
+    std::size_t samples = 0;
+    std::size_t bytes = 0;
+  };
+  [[nodiscard]] Depth depth();
+
  private:
+  void drop(std::uint32_t topic, const dds::RawSample& sample);
+
   std::size_t max_bytes_;
   std::size_t wake_entries_;
   std::mutex mutex_;
   std::condition_variable wake_;
   Batch pending_;
+  bool is_full_ = false;
   std::int64_t last_log_time_ns_ = 0;
   bool is_closed_ = false;
 };

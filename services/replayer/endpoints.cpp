@@ -9,21 +9,31 @@
 namespace baton {
 namespace {
 
-/// The recorded QoS: lines of "name: value".
-std::map<std::string, std::string> parseQos(const std::string& text) {
-  std::map<std::string, std::string> values;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    if (const std::size_t colon = line.find(": "); colon != std::string::npos) {
-      values[line.substr(0, colon)] = line.substr(colon + 2);
-    }
-  }
-  return values;
-}
-
 std::string valueOf(const std::map<std::string, std::string>& values, const std::string& key) {
   const auto found = values.find(key);
   return found == values.end() ? "" : found->second;
+}
+
+/// The recorded QoS, from lines of "name: value". "qos" is what eProsima's DDS Record & Replay keeps too, four truth
+/// values, and in our older recordings words; "qos_policies" has words, for all that is known of the writer.
+std::map<std::string, std::string> recordedQos(const mcap::StringMap& metadata) {
+  static const std::map<std::string, std::pair<const char*, const char*>> kWords{
+      {"reliability", {"reliable", "best_effort"}},
+      {"durability", {"transient_local", "volatile"}},
+      {"ownership", {"exclusive", "shared"}}};
+  std::map<std::string, std::string> values;
+  std::istringstream lines(valueOf(metadata, "qos") + "\n" + valueOf(metadata, "qos_policies"));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t colon = line.find(": ");
+    if (colon == std::string::npos) continue;
+    std::string key = line.substr(0, colon), value = line.substr(colon + 2);
+    if (const auto words = kWords.find(key); words != kWords.end()) {
+      if (value == "true") value = words->second.first;
+      if (value == "false") value = words->second.second;
+    }
+    values[std::move(key)] = std::move(value);
+  }
+  return values;
 }
 
 /// 0 for what is not recorded, or is no number.
@@ -57,7 +67,7 @@ dds::EndpointOptions replayEndpoint(const mcap::Channel& channel, const mcap::Sc
   if (type.empty()) throw UsageError("topic " + channel.topic + ": expected the name of its type, found none");
 
   const std::string new_name = valueOf(remap, channel.topic);
-  const std::map<std::string, std::string> qos = parseQos(valueOf(channel.metadata, "qos"));
+  const std::map<std::string, std::string> qos = recordedQos(channel.metadata);
   // Of the lasting profiles kEvent, also for what was a status: it keeps enough to send again whatever gets lost.
   return {.topic = new_name.empty() ? channel.topic : new_name,
           .type = type,

@@ -32,10 +32,11 @@ ExitCode supervise(int argc, char** argv) {
                  "how often a part that dies is started again; not plant and recorder")
       ->check(CLI::Range(0, 1000));
   std::string checkpoint;
-  bool starts_paused = false;
+  bool starts_paused = false, record_later = false;
   Scheduling scheduling;
   addScheduling(app, scheduling);
   app.add_option("--checkpoint", checkpoint, "checkpoint to go on from, instead of the scenario's start");
+  app.add_flag("--record-later", record_later, "the recorder waits for `record start`");
   app.add_flag("--paused", starts_paused, "wait for `sim resume` before the first step");
   if (!parseCommandLine(app, argc, argv)) return ExitCode::kOk;
   if (info.run.empty()) info.run = newRunId();
@@ -65,6 +66,7 @@ ExitCode supervise(int argc, char** argv) {
   options.recording = scenario.recording.enabled;
   options.checkpoint = checkpoint;
   options.starts_paused = starts_paused;
+  options.record_later = record_later;
   options.scheduling = scheduling;
   Service service(options, std::move(scenario));
   held.release();

@@ -26,11 +26,13 @@ const kStreamPieceBytes = 1 << 16;
 
 class Failure extends Error {}
 
-/// Decodes the messages of a channel by its schema's text; made once for each schema.
+/// Decodes the messages of a channel by its schema's text; made once for each schema. Nothing for a schema that is not
+/// available, which the specification says with an empty encoding.
 function makeDecoder(channel, schema) {
   const where = `topic ${channel.topic}`;
   if (schema == undefined) throw new Failure(`${where}: no schema ${channel.schemaId}`);
   if (channel.messageEncoding !== "cdr") throw new Failure(`${where}: message encoding "${channel.messageEncoding}"`);
+  if (schema.encoding === "" && schema.data.length === 0) return undefined;
   if (schema.encoding !== "omgidl") throw new Failure(`${where}: schema encoding "${schema.encoding}"`);
   try {
     const definitions = omgidlParser.parseIDL(new TextDecoder("utf-8", { fatal: true }).decode(schema.data));
@@ -90,12 +92,13 @@ class Contents {
     if (channel == undefined) throw new Failure(`a message before its channel ${message.channelId}`);
     ++this.messages;
     ++this.topics.get(channel.topic).count;
+    const decoder = this.decoders.get(message.channelId);
     try {
-      this.decoders.get(message.channelId).readMessage(message.data);
+      decoder?.readMessage(message.data);
     } catch (error) {
       throw new Failure(`topic ${channel.topic}: message ${message.sequence} cannot be decoded: ${error.message}`);
     }
-    ++this.decoded;
+    if (decoder != undefined) ++this.decoded;
     this.addToSum([message.channelId, message.sequence, message.logTime, message.publishTime], message.data);
   }
 

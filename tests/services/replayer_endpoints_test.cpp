@@ -54,6 +54,29 @@ TEST(ReplayEndpoint, TakesWhatReadersMayDemandFromTheRecording) {
   EXPECT_EQ(replayEndpoint(channel, nullptr, {}).liveliness, dds::Liveliness{});
 }
 
+TEST(ReplayEndpoint, ReadsTheTruthValuesThatEprosimasRecorderWrites) {
+  mcap::Channel channel = recordedChannel("volatile");
+  channel.metadata["qos"] = "reliability: true\ndurability: false\nownership: true\nkeyed: true";
+  dds::EndpointOptions endpoint = replayEndpoint(channel, nullptr, {});
+  EXPECT_EQ(endpoint.profile, dds::Profile::kLoop);
+  EXPECT_TRUE(endpoint.keyed);
+  EXPECT_TRUE(endpoint.exclusive_ownership);
+  channel.metadata["qos"] = "reliability: true\ndurability: true\nownership: false\nkeyed: false";
+  endpoint = replayEndpoint(channel, nullptr, {});
+  EXPECT_EQ(endpoint.profile, dds::Profile::kEvent);
+  EXPECT_FALSE(endpoint.keyed);
+  EXPECT_FALSE(endpoint.exclusive_ownership);
+}
+
+TEST(ReplayEndpoint, BelievesTheFullPoliciesWhereThereAreSome) {
+  mcap::Channel channel = recordedChannel("volatile");
+  channel.metadata["qos"] = "reliability: true\ndurability: true\nownership: false\nkeyed: false\n";
+  channel.metadata["qos_policies"] = "reliability: reliable\ndurability: volatile\nownership: exclusive\n";
+  const dds::EndpointOptions endpoint = replayEndpoint(channel, nullptr, {});
+  EXPECT_EQ(endpoint.profile, dds::Profile::kLoop);
+  EXPECT_TRUE(endpoint.exclusive_ownership);
+}
+
 TEST(ReplayEndpoint, OffersLateJoinersEverythingWhenTheQosIsNotRecorded) {
   mcap::Channel channel = recordedChannel("volatile");
   channel.metadata.erase("qos");

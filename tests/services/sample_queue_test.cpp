@@ -70,15 +70,41 @@ TEST(SampleQueue, ABatchIsEmptiedBeforeItIsFilledAgain) {
 TEST(SampleQueue, HoldsItsBytesAndNotOneMore) {
   SampleQueue queue(100, 1);
   EXPECT_TRUE(push(queue, 0, 1, 60));
-  EXPECT_FALSE(push(queue, 0, 2, 41));
-  EXPECT_TRUE(push(queue, 0, 3, 40)) << "what fits is still taken";
-  EXPECT_FALSE(push(queue, 0, 4, 1));
+  EXPECT_TRUE(push(queue, 0, 2, 40));
+  EXPECT_FALSE(push(queue, 0, 3, 1));
+  EXPECT_EQ(queue.depth().samples, 2u);
+  EXPECT_EQ(queue.depth().bytes, 100u);
   SampleQueue::Batch batch;
   ASSERT_TRUE(queue.take(batch, kNoWait));
   ASSERT_EQ(batch.entries.size(), 2u);
-  EXPECT_EQ(batch.entries[0].sequence, 1u);
-  EXPECT_EQ(batch.entries[1].sequence, 3u);
-  EXPECT_TRUE(push(queue, 0, 5, 100)) << "taking makes room";
+  EXPECT_EQ(queue.depth().samples, 0u);
+  EXPECT_TRUE(push(queue, 0, 4, 100)) << "taking makes room";
+}
+
+TEST(SampleQueue, WhatFindsNoRoomIsToldByWriterInOnePiece) {
+  SampleQueue queue(100, 1);
+  const auto of = [](std::uint8_t writer, std::uint64_t sequence, std::size_t size) {
+    Sample sample = sampleOf(sequence, size);
+    sample.raw.writer.bytes.fill(writer);
+    return sample;
+  };
+  EXPECT_TRUE(queue.push(3, of(1, 10, 90).raw));
+  EXPECT_FALSE(queue.push(3, of(1, 11, 11).raw));
+  EXPECT_FALSE(queue.push(3, of(1, 12, 1).raw)) << "it would fit, but lies behind one that did not";
+  EXPECT_FALSE(queue.push(4, of(2, 7, 1).raw));
+  SampleQueue::Batch batch;
+  ASSERT_TRUE(queue.take(batch, kNoWait));
+  ASSERT_EQ(batch.entries.size(), 1u);
+  ASSERT_EQ(batch.drops.size(), 2u);
+  EXPECT_EQ(batch.drops[0].topic, 3u);
+  EXPECT_EQ(batch.drops[0].writer, of(1, 0, 1).raw.writer);
+  EXPECT_EQ(batch.drops[0].first_sequence, 11u);
+  EXPECT_EQ(batch.drops[0].last_sequence, 12u);
+  EXPECT_EQ(batch.drops[1].topic, 4u);
+  EXPECT_EQ(batch.drops[1].first_sequence, 7u);
+  ASSERT_TRUE(queue.push(3, of(1, 13, 1).raw));
+  ASSERT_TRUE(queue.take(batch, kNoWait));
+  EXPECT_TRUE(batch.drops.empty()) << "told once";
 }
 
 TEST(SampleQueue, LogTimesNeverDecreaseAcrossTopicsAndBatches) {

@@ -144,7 +144,10 @@ std::vector<std::string> writeRecording(const std::filesystem::path& folder, con
     ledger.book(key, 1, manifest);
     files.write(key, 1, manifest);
   }
-  ledger.dropped(plan.dropped);
+  if (plan.dropped > 0) {
+    const std::uint64_t first = plan.first_sequence + plan.samples;
+    ledger.dropped(ledger.streamOf(streams.front().key), first, first + plan.dropped - 1);
+  }
   if (plan.has_certificate) {
     files.writer().addMetadata("baton.certificate",
                                {{"complete", ledger.isComplete() ? "true" : "false"},

@@ -42,6 +42,7 @@ struct BagSummary {
   mcap::FileInfo info;
   mcap::StringMap run;                         // "baton.run": what it is a recording of
   std::optional<mcap::StringMap> certificate;  // "baton.certificate"
+  std::string next_part;                       // "baton.part_end": the file that goes on with it
   std::vector<std::string> damage;
   std::uint64_t messages = 0;  // that could be read, as all that follows
   std::uint64_t plain_bytes = 0;
@@ -60,7 +61,8 @@ struct BagSummary {
 Verdict verdictOn(const BagSummary& bag) {
   if (!bag.damage.empty()) return Verdict::kDamaged;
   if (!bag.info.is_complete) return Verdict::kCut;
-  const bool needs_certificate = !bag.run.empty();  // a finished file of somebody else has none
+  // A finished file of somebody else has none; the parts of one recording have one, in the last.
+  const bool needs_certificate = !bag.run.empty() && bag.next_part.empty();
   const bool is_certified = bag.certificate && valueOf(*bag.certificate, "complete") == "true";
   return is_certified || (!bag.certificate && !needs_certificate) ? Verdict::kComplete : Verdict::kIncomplete;
 }
@@ -70,6 +72,7 @@ std::string reasonFor(const BagSummary& bag) {
   if (!bag.damage.empty()) return bag.damage.front();
   if (!bag.info.is_complete) return bag.info.problem;
   if (bag.certificate) return "by its certificate: " + valueOf(*bag.certificate, "summary");
+  if (!bag.next_part.empty()) return "a part of a recording that goes on in " + bag.next_part;
   return bag.run.empty() ? "finished; it was not recorded by Baton and has no certificate" : "it has no certificate";
 }
 
@@ -118,6 +121,7 @@ BagSummary summarize(const std::string& file) {
     for (const mcap::Metadata& metadata : reader.metadata()) {
       if (metadata.name == "baton.run") bag.run = metadata.values;
       if (metadata.name == "baton.certificate") bag.certificate = metadata.values;
+      if (metadata.name == "baton.part_end") bag.next_part = valueOf(metadata.values, "next");
     }
     for (const mcap::AttachmentIndex& attachment : bag.attachments) (void)reader.readAttachment(attachment);
   } catch (const mcap::FormatError& error) {

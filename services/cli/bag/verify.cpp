@@ -6,6 +6,7 @@
 #include <future>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -48,6 +49,14 @@ void open(Part& part, const std::function<void(double)>& progress) {
   }
 }
 
+/// The index of the first part that there still is, by the certificate in the last one.
+unsigned firstPart(const Part& last) {
+  const auto text = attachmentText(*last.reader, "certificate.json");
+  const nlohmann::json certificate = nlohmann::json::parse(text.value_or(""), nullptr, false);
+  if (!certificate.is_object() || !certificate.contains("first_part")) return 0;
+  return certificate["first_part"].is_number_unsigned() ? certificate["first_part"].get<unsigned>() : 0;
+}
+
 /// The parts in their order. What is wrong with the set goes to `missing`.
 std::vector<Part> openParts(const std::vector<std::string>& files, const std::function<void(double)>& progress,
                             std::vector<std::string>& missing) {
@@ -62,7 +71,7 @@ std::vector<Part> openParts(const std::vector<std::string>& files, const std::fu
     if (parts.size() > 1 && (!part.index || part.run != parts[0].run || (i > 0 && part.index == parts[i - 1].index))) {
       throw UsageError("expected the parts of one recording, each once; " + part.file + " is none of them");
     }
-    const unsigned expected = i == 0 ? 0 : *parts[i - 1].index + 1;
+    const unsigned expected = i == 0 ? firstPart(parts.back()) : *parts[i - 1].index + 1;
     if (part.index && *part.index != expected) {
       missing.push_back(fmt::format("part {} is not among the files", expected));
     }
@@ -175,15 +184,14 @@ void judge(const std::vector<Part>& parts, Verification& result) {
   }
   try {
     for (const std::string& service : writersOf(parts)) result.ledger.expect(service);
-    add(result.missing, result.ledger.problems());
     const auto certificate = attached(parts, "certificate.json");
+    if (certificate) result.ledger.excuse(*certificate);
+    add(result.missing, result.ledger.problems());
     if (!certificate) return result.missing.emplace_back("it has no certificate"), void();
     add(result.missing, result.ledger.disagreements(*certificate));
     const std::string verdict = metadataValue(*parts.back().reader, "baton.certificate", "complete");
-    if (verdict != "true" && result.missing.empty()) {
-      result.missing.push_back("its certificate says " +
-                               metadataValue(*parts.back().reader, "baton.certificate", "summary"));
-    }
+    result.summary = metadataValue(*parts.back().reader, "baton.certificate", "summary");
+    if (verdict != "true" && result.missing.empty()) result.missing.push_back("its certificate says " + result.summary);
   } catch (const Error& error) {
     result.missing.emplace_back(error.what());
   }
@@ -200,6 +208,7 @@ Verdict Verification::verdict() const {
 Verification verifyRecording(const std::vector<std::string>& files, const std::function<void(double)>& progress) {
   Verification result;
   const std::vector<Part> parts = openParts(files, progress, result.missing);
+  if (const auto certificate = attached(parts, "certificate.json")) result.ledger.beginAt(*certificate);
   Booking booking(result, parts, progress);
   for (const Part& part : parts) {
     result.files.push_back(part.file);

@@ -17,6 +17,7 @@ struct Verification {
   std::vector<std::string> damage;   // bytes that cannot be read, or are not those that were written
   std::vector<std::string> cuts;     // where a file ends in the middle
   std::vector<std::string> missing;  // messages that are missing, and what keeps completeness from being proven
+  std::string summary;               // the certificate's verdict, in its words
   Ledger ledger{{}};                 // every stream as the bytes give it, beside what its writer says of it
   std::uint64_t messages = 0;        // that could be read
   std::uint64_t bytes = 0;           // of the files

@@ -24,6 +24,7 @@ void printText(const Verification& found) {
     fmt::print("            proven from the bytes: {} services vouch for what they sent, all of it is here\n",
                found.ledger.manifests());
     fmt::print("            and the certificate in the file agrees; every checksum is right\n");
+    if (found.summary != "complete") fmt::print("            by its certificate: {}\n", found.summary);
   }
   for (const auto* findings : {&found.damage, &found.cuts, &found.missing}) {
     for (const std::string& text : *findings) fmt::print("            {}\n", text);
@@ -38,6 +39,7 @@ nlohmann::ordered_json toJson(const Verification& found) {
           {"damage", found.damage},
           {"cuts", found.cuts},
           {"missing", found.missing},
+          {"certificate", found.summary},
           {"manifests", found.ledger.manifests()},
           {"messages", found.messages},
           {"size_B", found.bytes},

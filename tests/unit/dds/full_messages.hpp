@@ -25,7 +25,8 @@ using AllTypes =
                    msg::SwapReport, msg::BatonMember, msg::BatonStatus, msg::ControllerStatus, msg::Parameter,
                    msg::ParameterStatus, msg::ParameterValue, msg::ParameterRequest, msg::ParameterReply, msg::Decision,
                    msg::LaunchRequest, msg::LaunchReply, msg::ServiceStatus, msg::Event, msg::StreamManifest,
-                   msg::ServiceManifest, msg::RecorderStatus, msg::ReplayStatus, msg::ReplayRequest, msg::ReplayReply>;
+                   msg::ServiceManifest, msg::WriterLoss, msg::RecorderStatus, msg::RecordRequest, msg::RecordReply,
+                   msg::ReplayStatus, msg::ReplayRequest, msg::ReplayReply>;
 
 inline constexpr std::uint64_t kId = 0xFEDC'BA98'7654'3210;
 inline constexpr std::int64_t kTime = -0x0123'4567'89AB'CDEF;
@@ -366,13 +367,41 @@ inline void fill(msg::ServiceManifest& m) {
   for (msg::StreamManifest& stream : m.streams()) fill(stream);
 }
 
+inline void fill(msg::WriterLoss& m) {
+  m.topic(std::string(64, 't'));
+  m.service(fullName());
+  m.lost(kId);
+}
+
+inline void fill(msg::RecordRequest& m) {
+  m.request_id(kId);
+  m.action(msg::RECORD_SNAPSHOT);
+  m.path(std::string(400, 'p'));
+}
+
+inline void fill(msg::RecordReply& m) {
+  m.request_id(kId);
+  m.accepted(true);
+  m.state(msg::RECORDER_FAILED);
+  m.step(kId);
+  m.path(std::string(400, 'p'));
+  m.text(std::string(400, 't'));
+}
+
 inline void fill(msg::RecorderStatus& m) {
   m.state(msg::RECORDER_FAILED);
+  m.ring(true);
   m.take(7);
   m.acknowledged_step(kId);
   m.messages(kId);
   m.bytes(kId);
+  m.part(7);
+  m.queued(kId);
+  m.queued_bytes(kId);
+  m.disk_left(kId);
   m.lost(kId);
+  m.losses().resize(msg::MAX_LOSSES);
+  for (msg::WriterLoss& loss : m.losses()) fill(loss);
   m.complete(true);
   m.path(std::string(400, 'p'));
   m.text(std::string(200, 't'));

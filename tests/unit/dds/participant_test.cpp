@@ -166,11 +166,13 @@ TEST(ParticipantTest, TheTextOfAWritersQosSaysWhatItPromises) {
                          .ownership_strength = 7});
   ASSERT_TRUE(
       signal.waitUntil([&] { return watch.found().contains(modest.guid()) && watch.found().contains(bold.guid()); }));
+  const std::string partition = "partition: " + test::testPartition("cell") + "\n";
   EXPECT_EQ(watch.found().at(modest.guid()).qos_text,
-            "reliability: reliable\ndurability: volatile\nownership: shared\nkeyed: false\n");
+            "reliability: reliable\ndurability: volatile\nownership: shared\nkeyed: false\n" + partition);
   EXPECT_EQ(watch.found().at(bold.guid()).qos_text,
             "reliability: best_effort\ndurability: volatile\nownership: exclusive\nkeyed: false\n"
-            "deadline_ns: 20000000\nliveliness: manual_by_topic\nlease_ns: 3000000000\nownership_strength: 7\n");
+            "deadline_ns: 20000000\nliveliness: manual_by_topic\nlease_ns: 3000000000\nownership_strength: 7\n" +
+                partition);
 }
 
 TEST(ParticipantTest, WritersAreHeardInOtherPartitionsAsWell) {

@@ -112,7 +112,8 @@ std::vector<Row> topicTable() {
        topics::kSwapOutcome, topics::kSwapReport, topics::kBatonStatus, topics::kControllerStatus,
        topics::kParameterStatus, topics::kParameterRequest, topics::kParameterReply, topics::kDecision,
        topics::kLaunchRequest, topics::kLaunchReply, topics::kServiceStatus, topics::kServiceManifest, topics::kEvent,
-       topics::kRecorderStatus, topics::kReplayStatus, topics::kReplayRequest, topics::kReplayReply);
+       topics::kRecorderStatus, topics::kRecordRequest, topics::kRecordReply, topics::kReplayStatus,
+       topics::kReplayRequest, topics::kReplayReply);
   return rows;
 }
 

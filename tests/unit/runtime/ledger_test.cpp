@@ -276,6 +276,140 @@ TEST_F(LedgerTest, AgreesWithItsOwnCertificateAndWithNoOther) {
   }
 }
 
+TEST_F(LedgerTest, WhatACertificateSaysIsNotInTheFilesOnPurposeIsNotMissedThere) {
+  // Of 100 samples 31 to 60 are in the files, but for a pause from 41 to 50; the others came, and were vouched for.
+  std::uint64_t whole_hash = 0;
+  for (std::uint64_t sequence = 1; sequence <= 100; ++sequence) {
+    const std::vector<std::byte> payload = state_.send();
+    whole_hash = dds::chainHash(whole_hash, payload);
+    if (sequence > 30 && sequence <= 60 && (sequence <= 40 || sequence > 50)) {
+      ledger_.book(state_.key(), sequence, payload);
+    }
+  }
+  for (int i = 0; i < 7; ++i) contact_.send();
+  ledger_.addManifest(manifestOf("plant", {&state_, &contact_}));
+  ledger_.addManifest(manifestOf("environment", {}));
+  EXPECT_FALSE(ledger_.isComplete());
+
+  Json told = certificate();
+  Json& row = told["streams"][0];
+  row["missing"] = 0;
+  row["left_out"] = 10;
+  row["received"] = 100;
+  row["received_hash"] = std::to_string(whole_hash);
+  told["left_out"] = {"contact"};
+  told["complete"] = true;
+  Ledger other = ledger_;
+  other.excuse(told.dump());
+  EXPECT_TRUE(other.isComplete()) << other.problems().front();
+  EXPECT_TRUE(other.disagreements(told.dump()).empty());
+
+  // But what it says came has to be what was sent,
+  Json less = told;
+  less["streams"][0]["received"] = 99;
+  other = ledger_;
+  other.excuse(less.dump());
+  EXPECT_TRUE(mentions(other.problems(), "100 samples sent, 99 recorded"));
+  // and what it does not excuse is missed.
+  less = told;
+  less["streams"][0]["left_out"] = 9;
+  other = ledger_;
+  other.excuse(less.dump());
+  EXPECT_FALSE(other.disagreements(less.dump()).empty());
+  for (const char* text : {"", "{", "[]", "{}", R"({"left_out": 1})", R"({"streams": [1]})", R"({"run_is_over": 3})"}) {
+    other = ledger_;
+    other.excuse(text);
+    EXPECT_FALSE(other.isComplete()) << text;
+  }
+}
+
+TEST_F(LedgerTest, AnExcerptIsHeldAgainstItsCertificateAlone) {
+  transmit(state_, 10);
+  EXPECT_FALSE(ledger_.isComplete()) << "nobody says what was sent";
+  ledger_.excuse(R"({"run_is_over": false, "streams": []})");
+  EXPECT_TRUE(ledger_.isComplete());
+}
+
+TEST_F(LedgerTest, ASumBeginsWhereTheFilesDo) {
+  Ledger later({});
+  for (std::uint64_t sequence = 1; sequence <= 20; ++sequence) {
+    const std::vector<std::byte> payload = state_.send();
+    ledger_.book(state_.key(), sequence, payload);
+    if (sequence == 10) {
+      const Json seed = {{"streams",
+                          {{{"topic", "plant_state"},
+                            {"writer", dds::toString(state_.guid)},
+                            {"hash_seed", std::to_string(state_.hash)}}}}};
+      later.beginAt(seed.dump());
+    } else if (sequence > 10) {
+      later.book(state_.key(), sequence, payload);
+    }
+  }
+  EXPECT_EQ(later.streams().at(state_.key()).stream_hash, state_.hash);
+}
+
+TEST_F(LedgerTest, ATopicThatIsLeftOutIsNotMissed) {
+  transmit(state_, 10);
+  for (int i = 0; i < 5; ++i) contact_.send();
+  ledger_.leaveOut("contact");
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  ledger_.addManifest(manifestOf("environment", {&contact_}));
+  EXPECT_TRUE(ledger_.isSettled());
+  EXPECT_TRUE(ledger_.isComplete());
+}
+
+TEST_F(LedgerTest, InTheMiddleOfARunOnlyGapsAreProblems) {
+  transmit(state_, 10);
+  EXPECT_TRUE(ledger_.problemsSoFar().empty()) << "nobody has said yet what was sent";
+  EXPECT_FALSE(ledger_.isComplete());
+  transmit(state_, 10, [](std::uint64_t sequence) { return sequence > 12; });
+  transmit(status_, 10, [](std::uint64_t sequence) { return sequence == 10; });
+  ASSERT_EQ(ledger_.problemsSoFar().size(), 1u);
+  EXPECT_TRUE(mentions(ledger_.problemsSoFar(), "plant_state of " + dds::toString(state_.guid) + ": 2 samples"));
+}
+
+TEST_F(LedgerTest, WhatFoundNoRoomIsCountedOnceAndListed) {
+  transmit(state_, 10);
+  Ledger::Stream& stream = ledger_.streamOf(state_.key());
+  for (int i = 0; i < 5; ++i) state_.send();
+  ledger_.dropped(stream, 11, 15);
+  transmit(state_, 1);
+  EXPECT_EQ(ledger_.missing(), 5u);
+  ASSERT_EQ(ledger_.gaps().size(), 1u);
+  EXPECT_EQ(ledger_.gaps()[0].first_sequence, 11u);
+  EXPECT_EQ(ledger_.gaps()[0].last_sequence, 15u);
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  ledger_.addManifest(manifestOf("environment", {}));
+  EXPECT_TRUE(mentions(ledger_.problems(), "16 samples sent, 11 recorded"));
+  EXPECT_TRUE(mentions(ledger_.problems(), "5 samples came faster than they could be written"));
+}
+
+TEST_F(LedgerTest, WhatFoundNoRoomBeforeTheFirstIsMissingToo) {
+  ledger_.dropped(ledger_.streamOf(state_.key()), 1, 4);
+  for (int i = 0; i < 4; ++i) state_.send();
+  transmit(state_, 1);
+  EXPECT_EQ(ledger_.missing(), 4u);
+  EXPECT_EQ(certificate()["streams"][0]["first_sequence"], 1u);
+  EXPECT_EQ(certificate()["streams"][0]["count"], 1u);
+}
+
+TEST_F(LedgerTest, GapsOfAWriterNobodyVouchesForAreProblems) {
+  Sender foreign{"turtle/pose", guidOf(9)};
+  transmit(foreign, 5, [](std::uint64_t sequence) { return sequence != 3; });
+  ledger_.addManifest(manifestOf("plant", {}));
+  ledger_.addManifest(manifestOf("environment", {}));
+  EXPECT_TRUE(mentions(ledger_.problems(), "turtle/pose"));
+}
+
+TEST_F(LedgerTest, WhatCannotBeRecordedIsAProblem) {
+  ledger_.addManifest(manifestOf("plant", {}));
+  ledger_.addManifest(manifestOf("environment", {}));
+  EXPECT_TRUE(ledger_.isComplete());
+  ledger_.cannotRecord("a writer of another type");
+  EXPECT_TRUE(mentions(ledger_.problems(), "a writer of another type"));
+  EXPECT_TRUE(mentions(ledger_.problemsSoFar(), "a writer of another type"));
+}
+
 TEST_F(LedgerTest, TheCertificateIsWrittenWhateverBytesAForeignNameHas) {
   Sender foreign{"caf\xE9\x01\"", guidOf(9)};
   transmit(foreign, 1);

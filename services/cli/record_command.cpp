@@ -1,0 +1,175 @@
+#include "record_command.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "cell_target.hpp"
+#include "messages/state_names.hpp"
+#include "runtime/json.hpp"
+#include "runtime/progress_line.hpp"
+#include "runtime/service_options.hpp"
+
+namespace baton {
+namespace {
+using Json = nlohmann::ordered_json;
+using ull = unsigned long long;
+
+constexpr std::chrono::minutes kFilePatience{2};  // for one that is written and waits for its disk
+
+struct Arguments {
+  CellTarget target;
+  std::string out;
+};
+
+CellClient clientOf(const CellTarget& target) { return CellClient(CellClient::find(target.domain, target.cell)); }
+
+double mega(std::uint64_t bytes) { return static_cast<double>(bytes) * 1e-6; }
+
+void requireRecorder(const CellClient& client) {
+  if (!client.info().recording.empty()) return;
+  throw UnavailableError("run " + client.info().run +
+                         " has no recorder: start it without --no-recording; with --record-later it waits for "
+                         "`baton record start`");
+}
+
+Json toJson(const msg::RecorderStatus& status) {
+  Json losses = Json::array();
+  for (const msg::WriterLoss& loss : status.losses()) {
+    losses.push_back({{"topic", loss.topic().c_str()}, {"service", loss.service().c_str()}, {"lost", loss.lost()}});
+  }
+  return {{"state", toString(status.state())},
+          {"ring", status.ring()},
+          {"path", status.path().c_str()},
+          {"part", status.part()},
+          {"messages", status.messages()},
+          {"bytes", status.bytes()},
+          {"queued", status.queued()},
+          {"queued_bytes", status.queued_bytes()},
+          {"disk_left_bytes", status.disk_left()},
+          {"lost", status.lost()},
+          {"losses", losses},
+          {"acknowledged_step", status.acknowledged_step()},
+          {"complete", status.complete()},
+          {"text", status.text().c_str()}};
+}
+
+void print(const msg::RecorderStatus& status) {
+  std::printf("%s %s", toString(status.state()), status.path().c_str());
+  if (status.part() > 0) std::printf(", part %u", status.part());
+  std::printf("\n%llu messages, %.2f MB %s, %llu lost, every loop sample up to step %llu\n", ull{status.messages()},
+              mega(status.bytes()), status.ring() ? "in memory" : "in the file", ull{status.lost()},
+              ull{status.acknowledged_step()});
+  std::printf("%llu samples (%.2f MB) wait to be written, %.0f MB are left on the disk\n", ull{status.queued()},
+              mega(status.queued_bytes()), mega(status.disk_left()));
+  for (const msg::WriterLoss& loss : status.losses()) {
+    std::printf("  %-20s %-16s %llu lost\n", loss.topic().c_str(), loss.service().c_str(), ull{loss.lost()});
+  }
+  if (status.text().size() > 0) std::printf("%s\n", status.text().c_str());
+}
+
+void recordStatus(const CellTarget& target, ExitCode& exit_code) {
+  CellClient client = clientOf(target);
+  requireRecorder(client);
+  const auto status = client.latest(dds::topics::kRecorderStatus);
+  if (!status) throw UnavailableError("the recorder says nothing; see `baton logs recorder`");
+  exit_code = status->state() == msg::RECORDER_FAILED ? ExitCode::kFailed : ExitCode::kOk;
+  if (target.json) {
+    std::cout << toText(toJson(*status)) << '\n';
+  } else {
+    print(*status);
+  }
+}
+
+const char* doneText(msg::RecordAction action) {
+  switch (action) {
+    case msg::RECORD_START: return "recording from step";
+    case msg::RECORD_STOP: return "ended at step";
+    case msg::RECORD_PAUSE: return "paused at step";
+    case msg::RECORD_RESUME: return "recording again from step";
+    case msg::RECORD_SNAPSHOT: return "written up to step";
+  }
+  return "done at step";
+}
+
+/// The recorder's own folder is not this one.
+std::string absoluteOut(const std::string& out) {
+  if (out.empty()) return "";
+  const std::filesystem::path path = std::filesystem::absolute(out).lexically_normal();
+  if (!std::filesystem::is_directory(path.parent_path())) {
+    throw UsageError("--out " + out + ": expected a file in an existing folder, and " + path.parent_path().string() +
+                     " is none");
+  }
+  if (std::filesystem::exists(path)) throw UsageError("--out " + out + " exists: choose another name");
+  constexpr std::size_t kMaxPath = 400;
+  if (path.string().size() > kMaxPath) throw UsageError("--out: expected a path of at most 400 characters");
+  return path.string();
+}
+
+void ask(const Arguments& arguments, msg::RecordAction action, ExitCode& exit_code) {
+  const std::string out = absoluteOut(arguments.out);
+  CellClient client = clientOf(arguments.target);
+  requireRecorder(client);
+  msg::RecordRequest request;
+  request.request_id(CellClient::newRequestId());
+  request.action(action);
+  request.path(out);
+  ProgressLine line;
+  line.show("waiting for the recorder");
+  const auto reply = client.ask<msg::RecordRequest, msg::RecordReply>(
+      dds::topics::kRecordRequest, request, dds::topics::kRecordReply,
+      [&](const msg::RecordReply& one) { return one.request_id() == request.request_id(); }, kRecorderName,
+      action == msg::RECORD_STOP || action == msg::RECORD_SNAPSHOT ? kFilePatience : CellClient::kPatience);
+  line.clear();
+  if (!reply) throw UnavailableError("the recorder did not answer; see `baton record status`");
+  exit_code = reply->accepted() ? ExitCode::kOk : ExitCode::kFailed;
+  if (arguments.target.json) {
+    std::cout << toText(Json{{"accepted", reply->accepted()},
+                             {"state", toString(reply->state())},
+                             {"step", reply->step()},
+                             {"path", reply->path().c_str()},
+                             {"text", reply->text().c_str()}})
+              << '\n';
+  } else if (reply->accepted()) {
+    const std::string text = reply->text().c_str();
+    std::printf("%s %llu: %s%s\n", doneText(action), ull{reply->step()}, reply->path().c_str(),
+                text.empty() ? "" : (", " + text).c_str());
+  } else {
+    std::printf("refused at step %llu: %s\n", ull{reply->step()}, reply->text().c_str());
+  }
+}
+
+}  // namespace
+
+void addRecordCommand(CLI::App& app, ExitCode& exit_code) {
+  CLI::App* command = app.add_subcommand("record", "what the run's recorder does, and how it stands");
+  command->require_subcommand(1);
+  command->footer(
+      "The run goes on whatever is asked here. What is left out on purpose is told in the certificate, step by step, "
+      "and\n"
+      "makes no recording incomplete.\n"
+      "Exit codes: 0 done; 1 refused, or the recorder has failed; 2 wrong input; 3 no run, no recorder, no answer.");
+  const auto arguments = std::make_shared<Arguments>();
+  const auto add = [&](const char* name, const char* help) {
+    return addCellCommand(*command, arguments->target, name, help);
+  };
+  const auto addRequest = [&](const char* name, const char* help, msg::RecordAction action) {
+    CLI::App* sub = add(name, help);
+    sub->callback([=, &exit_code] { ask(*arguments, action, exit_code); });
+    return sub;
+  };
+  add("status", "what has been recorded so far, what waits, what is lost")->callback([=, &exit_code] {
+    recordStatus(arguments->target, exit_code);
+  });
+  addRequest("start", "begin a file: in a run that was started with --record-later, or after stop", msg::RECORD_START)
+      ->add_option("--out", arguments->out, "the file (default: the one the run was started with)");
+  addRequest("stop", "end the file, with its certificate; `record start --out FILE` begins another", msg::RECORD_STOP);
+  addRequest("pause", "write nothing until resume: a hole in the file, on purpose", msg::RECORD_PAUSE);
+  addRequest("resume", "go on in the same file", msg::RECORD_RESUME);
+  addRequest("snapshot", "write what a ring holds (recording: {ring_s: SECONDS}); it goes on", msg::RECORD_SNAPSHOT)
+      ->add_option("--out", arguments->out, "the file (default: beside the run's recording, named after the step)");
+}
+
+}  // namespace baton

@@ -1,0 +1,120 @@
+/// One recording on the disk: a file, or several parts of one, with what the run is of in each and the certificate in
+/// the last. Each part stands for itself: schemas, channels, scenario and robot are in it. A sample is in exactly one.
+///
+/// One thread at a time. Nothing is allocated for a sample once a part has seen its writer.
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "certificate.hpp"
+#include "mcap/writer.hpp"
+#include "storage_policy.hpp"
+
+namespace baton {
+
+struct Attachment {
+  std::string name;
+  std::string media_type;
+  std::string text;
+};
+
+/// What a run is of, as each part says at its beginning.
+struct Origin {
+  mcap::StringMap run;
+  std::vector<Attachment> attachments;
+};
+
+class Recording {
+ public:
+  /// Creates the first part. `config` and `origin` outlive the recording. Throws UnavailableError when the file is
+  /// there already or cannot be created.
+  Recording(std::filesystem::path path, const RecordingConfig& config, const Origin& origin, std::uint64_t elapsed,
+            std::uint64_t from_step);
+
+  struct Sample {
+    std::uint64_t sequence = 0;
+    std::int64_t log_time_ns = 0;
+    std::int64_t source_timestamp_ns = 0;
+    std::uint64_t lost_before = 0;  // samples of its writer that should have come before it
+    std::span<const std::byte> payload;
+  };
+  /// Throws WriteError.
+  void write(const Stream& stream, const Sample& sample);
+  void flush() { file_->flush(); }
+  void sync() { file_->sync(); }
+  /// Goes on in another part when this one is full. @param elapsed  steps of the run so far.  @param step  of the
+  /// state.
+  void splitWhenFull(std::uint64_t elapsed, std::uint64_t step);
+  /// All but what is left on the disk.
+  [[nodiscard]] Storage storage() const;
+  void dropOldestPart();
+
+  /// The last part is finished, with the certificate; nothing is written any more. @param holes  beside those that
+  /// dropped parts have left.
+  void finish(Certificate& certificate, std::uint64_t to_step, const std::vector<Hole>& holes,
+              const std::vector<Attachment>& attachments);
+
+  /// Whether anything of it is here.
+  [[nodiscard]] bool holds(const Stream& stream) const {
+    return stream.index < written_.size() && written_[stream.index].stream != nullptr;
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] unsigned part() const { return index_; }
+  [[nodiscard]] std::uint64_t messages() const { return messages_; }
+  /// Of these, those that no end of this process can take away any more.
+  [[nodiscard]] std::uint64_t writtenMessages() const {
+    if (!file_) return messages_;
+    const mcap::WriterStatistics statistics = file_->statistics();
+    return messages_ - (statistics.messages - statistics.written_messages);
+  }
+  [[nodiscard]] std::uint64_t bytes() const { return closed_bytes_ + (file_ ? file_->statistics().file_bytes : 0); }
+
+ private:
+  /// How a stream stood when a part got the first of it.
+  struct Share {
+    std::size_t stream = 0;
+    std::uint64_t first_sequence = 0;
+    std::uint64_t count_before = 0;
+    std::uint64_t missing_before = 0;
+    std::uint64_t hash_before = 0;
+  };
+  struct Part {
+    std::filesystem::path path;
+    std::uint64_t bytes = 0;
+    std::uint64_t from_step = 0;
+    std::uint64_t messages_before = 0;
+    std::vector<Share> shares;
+  };
+  struct Written {
+    const Stream* stream = nullptr;
+    RecordedStream recorded;
+    mcap::ChannelId channel{};  // in this part; 0: none yet
+    std::uint64_t dropped = 0;  // of the count, in parts that are gone
+    std::uint64_t dropped_missing = 0;
+  };
+
+  [[nodiscard]] std::unique_ptr<mcap::Writer> openPart(unsigned index, std::uint64_t from_step) const;
+  void openChannel(Written& written, const Sample& sample);
+  void closeFile();
+
+  std::filesystem::path path_;
+  const RecordingConfig& config_;
+  const Origin& origin_;
+  unsigned index_ = 0;
+  std::deque<Part> parts_;  // that are there; the last one is being written
+  std::unique_ptr<mcap::Writer> file_;
+  std::vector<Written> written_;  // by the stream's index
+  std::optional<Hole> dropped_;   // where the oldest parts were
+  std::uint64_t messages_ = 0;
+  std::uint64_t closed_bytes_ = 0;
+  std::uint64_t part_elapsed_ = 0;  // of the run, when the part began
+  std::uint64_t from_step_ = 0;
+};
+
+}  // namespace baton

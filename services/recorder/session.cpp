@@ -1,0 +1,311 @@
+#include "session.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "dds/codec.hpp"
+#include "run_manifest.hpp"
+
+namespace baton {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kIdle = std::chrono::milliseconds(10);  // how long a sample may wait before it is written
+constexpr auto kTend = std::chrono::seconds(1);        // what a killed recorder may take along
+constexpr std::size_t kMaxStatusText = 199, kMaxTopicText = 64, kMaxText = 399;
+constexpr auto kManifestPatience = std::chrono::seconds(5);  // for what is still on its way when the run has ended
+
+Stream::Role roleOf(const std::string& topic) {
+  if (topic == dds::topics::kRewind.name) return Stream::Role::kRewind;
+  if (topic == dds::topics::kParameterStatus.name) return Stream::Role::kParameterStatus;
+  if (topic == dds::topics::kEvent.name) return Stream::Role::kEvent;
+  return Stream::Role::kOther;
+}
+
+}  // namespace
+
+RecordingSession::RecordingSession(Service& service, SampleQueue& queue, const TopicReaders& topics)
+    : service_(service),
+      config_(service.scenario().recording),
+      queue_(queue),
+      topics_(topics),
+      status_out_(service.output(dds::topics::kRecorderStatus, {kPlantName})),
+      rewind_ack_out_(service.output(dds::topics::kRewindAck, {kPlantName})),
+      reply_out_(service.output(dds::topics::kRecordReply)),
+      origin_(originOf(service.options(), service.scenario())),
+      control_(config_.ring_steps > 0, config_.starts_stopped),
+      credit_(service.scenario()),
+      ledger_(servicesBut(kRecorderName, service.scenario())),
+      path_(service.options().out),
+      is_limited_(config_.split_bytes > 0 || config_.split_steps > 0 || config_.max_bytes > 0 ||
+                  config_.min_free_bytes > 0) {
+  free_bytes_ = freeBytes();
+  if (control_.isRing()) {
+    ring_ = std::make_unique<Ring>(config_.ring_steps, config_.ring_bytes);
+  } else if (control_.keeps()) {
+    start(path_);
+  }
+}
+
+void RecordingSession::ask(const msg::RecordRequest& request) {
+  const std::lock_guard lock(requests_mutex_);
+  requests_.push_back(request);
+}
+
+ExitCode RecordingSession::run() {
+  SampleQueue::Batch batch;
+  publishStatus();
+  // What is asked takes effect behind all that came before it: what is asked during a batch, behind the next one.
+  std::vector<msg::RecordRequest> requests;
+  while (queue_.take(batch, kIdle)) {
+    takeBatch(batch);
+    for (const msg::RecordRequest& request : requests) reply(request);
+    requests = takeRequests();
+    acknowledge(batch.entries.empty());
+    tend();
+    if (isDone()) break;
+  }
+  closeAll();
+  for (const msg::RecordRequest& request : requests) reply(request);
+  for (const msg::RecordRequest& request : takeRequests()) reply(request);
+  return is_incomplete_ ? ExitCode::kFailed : ExitCode::kOk;
+}
+
+// --- what comes
+// -------------------------------------------------------------------------------------------------------
+
+void RecordingSession::takeBatch(const SampleQueue::Batch& batch) {
+  if (config_.min_free_bytes > 0) free_bytes_ = freeBytes();
+  for (const SampleQueue::Entry& entry : batch.entries) {
+    const auto payload = batch.payload(entry);
+    Stream& stream = streamOf(entry.topic, entry.writer);
+    const std::uint64_t missing = stream.received->second.missing;
+    // What is not in the account may be here twice.
+    if (stream.is_booked && !ledger_.book(*stream.received, entry.sequence, payload)) continue;
+    if (stream.credit) credit_.came(*stream.credit, payload);
+    if (!stream.is_status) ++progress_;
+    if (stream.is_recorded) keep(stream, entry, payload, stream.received->second.missing - missing);
+    if (stream.role != Stream::Role::kOther) learn(stream, payload);
+  }
+  for (const SampleQueue::Drop& drop : batch.drops) {
+    const Stream& stream = streamOf(drop.topic, drop.writer);
+    if (stream.is_booked) ledger_.dropped(*stream.received, drop.first_sequence, drop.last_sequence);
+  }
+}
+
+Stream& RecordingSession::streamOf(std::uint32_t topic, const dds::Guid& writer) {
+  const auto [found, is_new] = streams_.try_emplace({topic, writer});
+  Stream& stream = found->second;
+  if (!is_new) return stream;
+  TopicReaders::Writer facts = topics_.of(topic, writer);
+  stream.index = streams_.size() - 1;
+  stream.received = &ledger_.streamOf({facts.topic, writer});
+  stream.type = facts.type;
+  stream.metadata = std::move(facts.metadata);
+  stream.role = roleOf(facts.topic);
+  stream.credit = credit_.placeOf(facts.topic);
+  stream.is_recorded = facts.is_recorded;
+  stream.is_booked = facts.is_recorded || facts.topic == dds::topics::kServiceManifest.name ||
+                     facts.topic == dds::topics::kServiceStatus.name;
+  stream.is_status = dds::isStatusTopic(facts.topic);
+  stream.lasts = facts.lasts;
+  if (!facts.is_recorded) ledger_.leaveOut(facts.topic);
+  return stream;
+}
+
+void RecordingSession::keep(const Stream& stream, const SampleQueue::Entry& entry, std::span<const std::byte> payload,
+                            std::uint64_t lost_before) {
+  if (holes_.isOpen()) return holes_.leaveOut();
+  if (ring_) {
+    const Ring::Lasting lasting = !stream.lasts      ? Ring::Lasting::kNo
+                                  : stream.is_status ? Ring::Lasting::kLatest
+                                                     : Ring::Lasting::kAll;
+    ring_->push({.stream = stream.index,
+                 .sequence = entry.sequence,
+                 .log_time_ns = entry.log_time_ns,
+                 .source_timestamp_ns = entry.source_timestamp_ns,
+                 .step = credit_.elapsedSteps(),
+                 .lost_before = lost_before,
+                 .lasting = lasting,
+                 .payload = payload});
+    return;
+  }
+  if (is_limited_) makeRoom();
+  if (!recording_) return;
+  try {
+    recording_->write(stream, {.sequence = entry.sequence,
+                               .log_time_ns = entry.log_time_ns,
+                               .source_timestamp_ns = entry.source_timestamp_ns,
+                               .lost_before = lost_before,
+                               .payload = payload});
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+void RecordingSession::learn(const Stream& stream, std::span<const std::byte> payload) {
+  const auto with = [&](auto message, const auto& use) {
+    if (dds::decode(payload, message)) use(message);
+  };
+  switch (stream.role) {
+    case Stream::Role::kRewind: return with(msg::Rewind{}, [&](const auto& rewind) { credit_.rewound(rewind); });
+    case Stream::Role::kParameterStatus:
+      return with(msg::ParameterStatus{}, [&](const auto& status) { notes_.add(status); });
+    case Stream::Role::kEvent: return with(msg::Event{}, [&](const auto& event) { notes_.add(event); });
+    case Stream::Role::kOther: return;
+  }
+}
+
+// --- what is asked
+// ----------------------------------------------------------------------------------------------------
+
+std::vector<msg::RecordRequest> RecordingSession::takeRequests() {
+  const std::lock_guard lock(requests_mutex_);
+  return std::exchange(requests_, {});
+}
+
+void RecordingSession::reply(const msg::RecordRequest& request) {
+  msg::RecordReply reply = answer(request);
+  reply.request_id(request.request_id());
+  reply.state(control_.state());
+  reply.step(credit_.acknowledged());
+  publishStatus();
+  const std::lock_guard lock(service_.mutex());
+  reply_out_.write(reply);
+}
+
+msg::RecordReply RecordingSession::answer(const msg::RecordRequest& request) {
+  msg::RecordReply reply;
+  std::string text = control_.objection(request.action());
+  if (text.empty() && has_run_ended_) text = "the run is over";
+  if (!text.empty()) {
+    reply.text(text);
+    return reply;
+  }
+  std::string path = path_;
+  try {
+    switch (request.action()) {
+      case msg::RECORD_START:
+        path = request.path().size() > 0 ? request.path().c_str() : service_.options().out;
+        start(path);
+        break;
+      case msg::RECORD_STOP: text = text_ = finish({.run_is_over = false, .reason = "stopped on request"}); break;
+      case msg::RECORD_PAUSE: holes_.open(credit_.take(), credit_.stateStep() + 1, "paused"); break;
+      case msg::RECORD_RESUME: holes_.close(credit_.stateStep()); break;
+      case msg::RECORD_SNAPSHOT:
+        path = pathOf(request);
+        text = writeRing(path, {.run_is_over = false, .reason = "the latest of a ring"});
+        break;
+    }
+    control_.done(request.action());
+    reply.accepted(true);
+  } catch (const std::exception& error) {
+    text = error.what();
+    if (request.action() == msg::RECORD_STOP) fail(text);
+  }
+  reply.path(path.substr(0, kMaxText));
+  reply.text(text.substr(0, kMaxText));
+  return reply;
+}
+
+void RecordingSession::start(const std::string& path) {
+  recording_ = std::make_unique<Recording>(path, config_, origin_, credit_.elapsedSteps(), credit_.stateStep());
+  holes_.clear();
+  path_ = path;
+  free_bytes_ = freeBytes();
+  text_.clear();
+}
+
+std::string RecordingSession::pathOf(const msg::RecordRequest& request) const {
+  if (request.path().size() > 0) return request.path().c_str();
+  const std::filesystem::path own(service_.options().out);
+  const std::string name =
+      own.stem().string() + "_step" + std::to_string(credit_.stateStep()) + own.extension().string();
+  return (own.parent_path() / name).string();
+}
+
+// --- what is done now and then
+// ----------------------------------------------------------------------------------------
+
+void RecordingSession::acknowledge(bool is_idle) {
+  service_.at(credit_.acknowledged());
+  if (credit_.isDue(is_idle)) {
+    credit_.told();
+    publishStatus();
+  }
+  if (const std::optional<msg::RewindAck> ack = credit_.answer()) rewind_ack_out_.write(*ack);
+}
+
+void RecordingSession::tend() {
+  const Clock::time_point now = Clock::now();
+  const bool is_tended = now - tended_ < kTend;
+  const bool is_synced = config_.sync_s <= 0.0 || now - synced_ < std::chrono::duration<double>(config_.sync_s);
+  if (is_tended && is_synced) return;
+  try {
+    if (recording_ && !is_synced) {
+      recording_->sync();
+    } else if (recording_) {
+      recording_->flush();
+    }
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+  if (!is_synced) synced_ = Clock::now();
+  if (is_tended) return;
+  tended_ = now;
+  free_bytes_ = freeBytes();
+  publishStatus();
+}
+
+/// As long as something comes, more may.
+bool RecordingSession::isDone() {
+  if (!has_run_ended_) return false;
+  for (const std::string& topic : topics_.leftOut()) ledger_.leaveOut(topic);
+  if (progress_at_end_ != progress_) moved_ = Clock::now();
+  progress_at_end_ = progress_;
+  return ledger_.isSettled() || Clock::now() - moved_ > kManifestPatience;
+}
+
+void RecordingSession::publishStatus() {
+  msg::RecorderStatus status;
+  status.state(control_.state());
+  status.ring(ring_ != nullptr);
+  status.take(credit_.take());
+  status.acknowledged_step(credit_.acknowledged());
+  status.messages(recording_ ? recording_->writtenMessages() : ring_ ? ring_->samples() : finished_messages_);
+  status.bytes(recording_ ? recording_->bytes() : ring_ ? ring_->bytes() : finished_bytes_);
+  status.part(recording_ ? recording_->part() : 0);
+  const SampleQueue::Depth depth = queue_.depth();
+  status.queued(depth.samples);
+  status.queued_bytes(depth.bytes);
+  status.disk_left(free_bytes_);
+  status.lost(ledger_.missing());
+  if (status.lost() > 0) addLosses(status);
+  status.complete(control_.state() == msg::RECORDER_CLOSED && !is_incomplete_);
+  status.path(path_);
+  status.text(text_.substr(0, kMaxStatusText));
+  status_out_.write(status);
+}
+
+/// The largest first.
+void RecordingSession::addLosses(msg::RecorderStatus& status) const {
+  for (const auto& [key, stream] : streams_) {
+    if (stream.received->second.missing == 0 || stream.is_status) continue;
+    msg::WriterLoss loss;
+    loss.topic(stream.topic().substr(0, kMaxTopicText));
+    if (const auto service = stream.metadata.find("service"); service != stream.metadata.end()) {
+      loss.service(service->second);
+    }
+    loss.lost(stream.received->second.missing);
+    status.losses().push_back(loss);
+  }
+  std::sort(status.losses().begin(), status.losses().end(),
+            [](const msg::WriterLoss& a, const msg::WriterLoss& b) { return a.lost() > b.lost(); });
+  if (status.losses().size() > msg::MAX_LOSSES) status.losses().resize(msg::MAX_LOSSES);
+}
+
+}  // namespace baton

@@ -1,0 +1,127 @@
+// Files that grow, and how they end.
+#include <spdlog/spdlog.h>
+#include <sys/statvfs.h>
+
+#include <filesystem>
+#include <limits>
+
+#include "session.hpp"
+
+namespace baton {
+
+std::uint64_t RecordingSession::freeBytes() const {
+  struct statvfs disk {};
+  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+  if (statvfs(folder.empty() ? "." : folder.c_str(), &disk) != 0) return std::numeric_limits<std::uint64_t>::max();
+  return std::uint64_t{disk.f_bavail} * disk.f_frsize;
+}
+
+/// Before a sample is written: in this part, in another one, or no more.
+void RecordingSession::makeRoom() {
+  if (!recording_) return;
+  try {
+    recording_->splitWhenFull(credit_.elapsedSteps(), credit_.stateStep());
+    for (;;) {
+      Storage storage = recording_->storage();
+      storage.free_bytes = free_bytes_;
+      const StorageVerdict verdict = judgeStorage(config_, storage);
+      if (verdict == StorageVerdict::kGoOn) return;
+      if (verdict == StorageVerdict::kStop) {
+        const std::string reason = reachedText(config_, storage);
+        text_ = finish({.run_is_over = false, .is_wanted = false, .reason = "ended early: " + reason});
+        control_.ended();
+        service_.event(
+            msg::SEVERITY_WARNING, "record",
+            "the recording ends at step " + std::to_string(credit_.stateStep()) + ": " + reason + "; the run goes on");
+        return publishStatus();
+      }
+      recording_->dropOldestPart();
+      if (config_.min_free_bytes > 0) free_bytes_ = freeBytes();
+    }
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+/// Returns what the certificate says.
+std::string RecordingSession::finish(const Ending& ending) {
+  // Whatever happens here, it is over.
+  const std::unique_ptr<Recording> recording = std::move(recording_);
+  std::string summary = close(*recording, ending, holes_.between(0, credit_.stateStep()));
+  holes_.clear();
+  finished_messages_ = recording->messages();
+  finished_bytes_ = recording->bytes();
+  return summary;
+}
+
+std::string RecordingSession::close(Recording& recording, const Ending& ending, const std::vector<Hole>& holes) {
+  for (const std::string& topic : topics_.leftOut()) ledger_.leaveOut(topic);
+  for (const std::string& what : topics_.unreadable()) ledger_.cannotRecord(what);
+  Certificate certificate(ledger_, ending);
+  for (const auto& [key, stream] : streams_) {
+    if (stream.is_recorded && !recording.holds(stream)) certificate.add(stream, {});
+  }
+  recording.finish(certificate, credit_.stateStep(), holes,
+                   {{"parameters.json", "application/json", notes_.parameters()},
+                    {"events.json", "application/json", notes_.events()}});
+  is_incomplete_ = is_incomplete_ || !certificate.isComplete();
+  spdlog::info("closed path={} parts={} messages={} bytes={} {}", recording.path().string(), recording.part() + 1,
+               recording.messages(), recording.bytes(), certificate.summary());
+  for (const std::string& problem : certificate.problems()) spdlog::warn("incomplete: {}", problem);
+  return certificate.summary();
+}
+
+/// All that the ring holds, as a recording of its own.
+std::string RecordingSession::writeRing(const std::string& path, const Ending& ending) {
+  const std::uint64_t span = credit_.elapsedSteps() - ring_->firstStep().value_or(credit_.elapsedSteps());
+  const std::uint64_t from_step = credit_.stateStep() - std::min(span, credit_.stateStep());
+  Recording recording(path, config_, origin_, credit_.elapsedSteps(), from_step);
+  std::vector<const Stream*> streams(streams_.size());
+  for (const auto& [key, stream] : streams_) streams[stream.index] = &stream;
+  ring_->forEach([&](const Ring::Sample& sample) {
+    recording.write(*streams[sample.stream], {.sequence = sample.sequence,
+                                              .log_time_ns = sample.log_time_ns,
+                                              .source_timestamp_ns = sample.source_timestamp_ns,
+                                              .lost_before = sample.lost_before,
+                                              .payload = sample.payload});
+  });
+  std::string summary = close(recording, ending, holes_.between(from_step, credit_.stateStep()));
+  finished_messages_ = recording.messages();
+  finished_bytes_ = recording.bytes();
+  return summary;
+}
+
+/// Nothing more is written; what comes is taken all the same, so that the run goes on.
+void RecordingSession::fail(const std::string& what) {
+  spdlog::error("recording failed: {}", what);
+  text_ = "recording failed: " + what;
+  try {
+    if (recording_) (void)finish({.run_is_over = false, .is_wanted = false, .reason = "ended early: " + what});
+  } catch (const std::exception&) {
+    // What is in the file up to here stays readable.
+  }
+  is_incomplete_ = true;
+  control_.failed();
+  publishStatus();
+  service_.event(msg::SEVERITY_ERROR, "record", text_ + "; the run goes on");
+}
+
+void RecordingSession::closeAll() {
+  try {
+    if (ring_) {
+      text_ = writeRing(path_, {.reason = "the latest of a ring"});
+      ring_.reset();
+    } else if (recording_) {
+      text_ = finish({});
+    } else if (text_.empty()) {
+      text_ = "nothing was recorded";
+    }
+    control_.closed();
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+  publishStatus();
+  status_out_.raw().waitForAcknowledgments(1000);
+}
+
+}  // namespace baton

@@ -1,0 +1,30 @@
+/// When a recording goes on in another part, and when the disk has no more room for it: decisions alone.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "runtime/scenario.hpp"
+
+namespace baton {
+
+/// @param part_bytes  of the part being written.  @param part_steps  of the run since it began.
+[[nodiscard]] bool isPartFull(const RecordingConfig& config, std::uint64_t part_bytes, std::uint64_t part_steps);
+
+/// How a recording stands on its disk.
+struct Storage {
+  std::uint64_t closed_bytes = 0;  // of parts that are finished
+  std::uint64_t part_bytes = 0;    // of the one being written
+  std::uint64_t closed_parts = 0;
+  std::uint64_t free_bytes = 0;  // left on the disk
+};
+
+enum class StorageVerdict { kGoOn, kDropOldest, kStop };
+
+/// What the part being written will grow by when it is ended now: its last chunk, the index, the certificate.
+[[nodiscard]] std::uint64_t closingBytes(const RecordingConfig& config, std::uint64_t part_bytes);
+[[nodiscard]] StorageVerdict judgeStorage(const RecordingConfig& config, const Storage& storage);
+/// What has been reached, for the verdicts that change something: "recording.max_MB is reached: 40.0 of 40 MB".
+[[nodiscard]] std::string reachedText(const RecordingConfig& config, const Storage& storage);
+
+}  // namespace baton

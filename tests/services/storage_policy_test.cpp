@@ -1,0 +1,69 @@
+/// When a part is full, and when the disk has no more room.
+#include "storage_policy.hpp"
+
+#include <gtest/gtest.h>
+
+namespace baton {
+namespace {
+
+constexpr std::uint64_t kMB = 1'000'000;
+
+TEST(PartIsFull, AtItsSizeOrItsTimeWhicheverComesFirst) {
+  RecordingConfig config;
+  EXPECT_FALSE(isPartFull(config, 1000 * kMB, 1'000'000)) << "nothing was asked for";
+  config.split_bytes = 10 * kMB;
+  EXPECT_FALSE(isPartFull(config, 10 * kMB - 1, 1'000'000));
+  EXPECT_TRUE(isPartFull(config, 10 * kMB, 0));
+  config.split_steps = 500;
+  EXPECT_FALSE(isPartFull(config, 0, 499));
+  EXPECT_TRUE(isPartFull(config, 0, 500));
+}
+
+RecordingConfig withBudget(std::uint64_t max_bytes, bool drops_oldest) {
+  RecordingConfig config;
+  config.chunk_bytes = 100'000;
+  config.max_bytes = max_bytes;
+  config.drops_oldest = drops_oldest;
+  return config;
+}
+
+TEST(Budget, EndsTheRecordingSoEarlyThatTheFinishedFileFits) {
+  const RecordingConfig config = withBudget(10 * kMB, false);
+  EXPECT_EQ(judgeStorage(config, {.part_bytes = 9 * kMB, .free_bytes = kMB}), StorageVerdict::kGoOn);
+  const std::uint64_t last = 9'700'000;
+  EXPECT_EQ(judgeStorage(config, {.part_bytes = last, .free_bytes = kMB}), StorageVerdict::kStop);
+  EXPECT_GE(last + closingBytes(config, last), config.max_bytes);
+}
+
+TEST(Budget, CountsAllParts) {
+  const RecordingConfig config = withBudget(10 * kMB, false);
+  EXPECT_EQ(judgeStorage(config, {.closed_bytes = 8 * kMB, .part_bytes = kMB, .closed_parts = 2}),
+            StorageVerdict::kGoOn);
+  EXPECT_EQ(judgeStorage(config, {.closed_bytes = 9 * kMB, .part_bytes = kMB, .closed_parts = 2}),
+            StorageVerdict::kStop);
+}
+
+TEST(Budget, DropsTheOldestPartWhereThatIsWantedAndThereIsOne) {
+  const RecordingConfig config = withBudget(10 * kMB, true);
+  EXPECT_EQ(judgeStorage(config, {.closed_bytes = 9 * kMB, .part_bytes = kMB, .closed_parts = 2}),
+            StorageVerdict::kDropOldest);
+  EXPECT_EQ(judgeStorage(config, {.part_bytes = 10 * kMB, .closed_parts = 0}), StorageVerdict::kStop);
+}
+
+TEST(LowDisk, EndsTheRecordingOrDropsTheOldest) {
+  RecordingConfig config;
+  config.min_free_bytes = 50 * kMB;
+  EXPECT_EQ(judgeStorage(config, {.part_bytes = kMB, .free_bytes = 50 * kMB}), StorageVerdict::kGoOn);
+  const Storage low{.part_bytes = kMB, .closed_parts = 1, .free_bytes = 50 * kMB - 1};
+  EXPECT_EQ(judgeStorage(config, low), StorageVerdict::kStop);
+  EXPECT_EQ(reachedText(config, low), "50.0 MB are left on the disk, less than recording.min_free_MB, 50");
+  config.drops_oldest = true;
+  EXPECT_EQ(judgeStorage(config, low), StorageVerdict::kDropOldest);
+}
+
+TEST(NoPolicy, NeverEndsARecording) {
+  EXPECT_EQ(judgeStorage({}, {.closed_bytes = 1'000'000 * kMB, .free_bytes = 0}), StorageVerdict::kGoOn);
+}
+
+}  // namespace
+}  // namespace baton

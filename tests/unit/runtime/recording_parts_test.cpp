@@ -1,0 +1,37 @@
+/// The names of a recording that is split.
+#include "runtime/recording_parts.hpp"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <fstream>
+
+namespace baton {
+namespace {
+namespace fs = std::filesystem;
+
+TEST(RecordingParts, AreNumberedBesideTheFirst) {
+  EXPECT_EQ(partOf("/data/run.mcap", 0), "/data/run.mcap");
+  EXPECT_EQ(partOf("/data/run.mcap", 1), "/data/run_0001.mcap");
+  EXPECT_EQ(partOf("/data/run.mcap", 12345), "/data/run_12345.mcap");
+  EXPECT_EQ(partOf("run.mcap", 2), "run_0002.mcap");
+  EXPECT_EQ(partOf("/data.d/run", 3), "/data.d/run_0003");
+}
+
+TEST(RecordingParts, AreFoundAmongOtherFiles) {
+  std::string pattern = (fs::temp_directory_path() / "baton-parts-XXXXXX").string();
+  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+  const fs::path folder = pattern;
+  for (const char* name :
+       {"run.mcap", "run_0002.mcap", "run_0001.mcap", "run_10000.mcap", "run_1.mcap", "run_01000.mcap", "run_0003.txt",
+        "run_abcd.mcap", "other_0001.mcap", "run_step12.mcap", "run_.mcap"}) {
+    std::ofstream(folder / name) << "x";
+  }
+  EXPECT_EQ(furtherPartsOf(folder / "run.mcap"),
+            (std::vector<fs::path>{folder / "run_0001.mcap", folder / "run_0002.mcap", folder / "run_10000.mcap"}));
+  EXPECT_TRUE(furtherPartsOf(folder / "absent" / "run.mcap").empty());
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace baton
