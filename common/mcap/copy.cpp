@@ -31,11 +31,10 @@ class Losses {
 
 }  // namespace
 
-Copier::Copier(const std::filesystem::path& out, const WriterOptions& options) : out_(out), writer_(out, options) {}
+Copier::Copier(const std::filesystem::path& out, const WriterOptions& options) : writer_(out, options) {}
 
 Copier::~Copier() {
-  std::error_code ignored;
-  if (!is_finished_ && std::filesystem::is_regular_file(out_, ignored)) std::filesystem::remove(out_, ignored);
+  if (!is_finished_) writer_.discard();
 }
 
 ChannelId Copier::channel(const Channel& channel, const Schema* schema) {

@@ -38,7 +38,6 @@ class Copier {
   [[nodiscard]] std::uint64_t messages() const { return writer_.statistics().messages; }
 
  private:
-  std::filesystem::path out_;
   Writer writer_;
   bool is_finished_ = false;
   std::unordered_map<const Channel*, ChannelId> known_;  // the readers' channels, so far

@@ -21,6 +21,13 @@ auto resumed(Call call) {
   return result;
 }
 
+std::filesystem::path presentPath(std::filesystem::path path, OutputFile::IfExists if_exists) {
+  std::error_code none;
+  const bool is_device = std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none);
+  if (if_exists == OutputFile::IfExists::kReplace && !is_device) path += ".part";
+  return path;
+}
+
 int openOutput(const std::filesystem::path& path, OutputFile::IfExists if_exists) {
   const int existing = if_exists == OutputFile::IfExists::kRefuse ? O_EXCL : O_TRUNC;
   const int fd = resumed([&] { return ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | existing, 0644); });
@@ -58,7 +65,17 @@ int Descriptor::reset() {
 }
 
 OutputFile::OutputFile(std::filesystem::path path, IfExists if_exists)
-    : path_(std::move(path)), fd_(openOutput(path_, if_exists)) {}
+    : path_(std::move(path)), present_path_(presentPath(path_, if_exists)), fd_(openOutput(present_path_, if_exists)) {}
+
+OutputFile::~OutputFile() {
+  if (present_path_ != path_) discard();
+}
+
+void OutputFile::discard() noexcept {
+  if (fd_.get() < 0) return;
+  fd_.reset();
+  ::unlink(present_path_.c_str());
+}
 
 void OutputFile::fail(const std::string& what, int error) {
   failure_ = path_.string() + ": " + what + ": " + errorText(error);
@@ -102,10 +119,16 @@ void OutputFile::sync() {
 
 void OutputFile::close() {
   if (!failure_.empty()) {
+    if (present_path_ != path_) discard();
     fd_.reset();
     throw WriteError(failure_);
   }
   if (const int error = fd_.reset()) fail("closing after " + std::to_string(size_) + " bytes", error);
+  if (present_path_ == path_) return;
+  if (::rename(present_path_.c_str(), path_.c_str()) == 0) return;
+  const int error = errno;
+  ::unlink(present_path_.c_str());
+  fail("it is written and cannot take its place", error);
 }
 
 InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)), fd_(openInput(path_)) {

@@ -30,10 +30,16 @@ class Descriptor {
 /// nobody can know what the file holds, so nothing more is put into it.
 class OutputFile {
  public:
+  /// kReplace: the bytes go to PATH.part, which takes the place of PATH when it is closed, and not before; what is no
+  /// regular file, as /dev/null, is written to as it is.
   enum class IfExists { kRefuse, kReplace };
 
   /// Creates the file. Throws UnavailableError when it is there already (kRefuse) or cannot be created.
   OutputFile(std::filesystem::path path, IfExists if_exists);
+  /// Without close(), what was written stays as it is; PATH.part is taken away.
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
 
   /// Hands all bytes to the operating system.
   void write(ByteView bytes);
@@ -41,6 +47,8 @@ class OutputFile {
   void sync();
   /// Closes and reports what the system held back until then.
   void close();
+  /// Takes the file away; nothing can be done with it any more.
+  void discard() noexcept;
   /// Throws the error of an earlier failure again, or WriteError when the file is closed.
   void requireHealthy() const;
 
@@ -54,6 +62,7 @@ class OutputFile {
   [[noreturn]] void fail(const std::string& what, int error);
 
   std::filesystem::path path_;
+  std::filesystem::path present_path_;  // until it is closed
   Descriptor fd_;
   std::uint64_t size_ = 0;
   std::uint64_t durable_size_ = 0;

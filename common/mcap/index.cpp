@@ -13,9 +13,8 @@ constexpr std::uint64_t kTailBytes = kFooterBytes + kMagic.size();
 /// A summary is trusted only when what it lists accounts for the whole data section: each piece inside, none
 /// overlapping, and between them only records that carry no data. So an index that leaves out messages is never
 /// believed.
-bool coversData(const InputFile& file, const FileIndex& index,
-                std::vector<std::pair<std::uint64_t, std::uint64_t>> pieces, std::uint64_t data_begin,
-                std::uint64_t summary_start, std::string& problem) {
+bool coversData(const InputFile& file, std::vector<std::pair<std::uint64_t, std::uint64_t>> pieces,
+                std::uint64_t data_begin, std::uint64_t summary_start, SummaryProblem& problem) {
   std::ranges::sort(pieces);
   std::uint64_t position = data_begin;
   bool has_data_end = false;
@@ -29,50 +28,55 @@ bool coversData(const InputFile& file, const FileIndex& index,
         case Opcode::kChunk:
         case Opcode::kAttachment:
         case Opcode::kMetadata:
-          problem = "its summary does not list the " + opcodeName(place->opcode) + " at byte " +
-                    std::to_string(place->offset);
+          problem = {"its summary does not list the " + opcodeName(place->opcode) + " at byte " +
+                         std::to_string(place->offset),
+                     place->opcode == Opcode::kMessage};
           return false;
         case Opcode::kDataEnd: has_data_end = place->end() == summary_start; break;
         default: break;
       }
     }
-    if (!walk.problem().empty()) problem = "its summary does not fit its data: " + walk.problem();
+    if (!walk.problem().empty()) problem = {"its summary does not fit its data: " + walk.problem()};
     return walk.problem().empty();
   };
   for (const auto& [offset, length] : pieces) {
     if (offset < position || offset > summary_start || length > summary_start - offset) {
-      problem = "its summary lists data at byte " + std::to_string(offset) + " that cannot be there";
+      problem = {"its summary lists data at byte " + std::to_string(offset) + " that cannot be there"};
       return false;
     }
     if (!gapIsQuiet(offset)) return false;
     position = offset + length;
   }
   if (!gapIsQuiet(summary_start)) return false;
-  if (!has_data_end) problem = "its summary does not follow the end of its data";
-  if (index.statistics.chunk_count == 0 && index.statistics.message_count != 0)
-    problem = "its messages are not indexed";
-  return problem.empty();
+  if (!has_data_end) problem = {"its summary does not follow the end of its data"};
+  return problem.text.empty();
 }
 
-/// What the summary says of itself, apart from where the data are.
-std::string inconsistency(const FileIndex& index, bool has_statistics) {
+/// What the summary says of itself, apart from where the data are. A kind of record of which it lists none at all may
+/// be left out, as the format has it; one of which it lists some must be there whole.
+SummaryProblem inconsistency(const FileIndex& index, bool has_statistics) {
   const Statistics& statistics = index.statistics;
-  if (!has_statistics) return "its summary has no statistics";
-  if (statistics.chunk_count != index.extents.size()) return "its summary does not list every chunk";
-  if (statistics.attachment_count != index.attachments.size()) return "its summary does not list every attachment";
-  if (statistics.metadata_count != index.metadata.size()) return "its summary does not list every metadata record";
-  if (statistics.channel_count != index.channels.size()) return "its summary does not list every channel";
+  if (!has_statistics) return {"its summary has no statistics", true};
+  const auto incomplete = [](const char* kind, std::size_t listed) {
+    return SummaryProblem{std::string("its summary does not list every ") + kind, listed == 0};
+  };
+  if (statistics.chunk_count != index.extents.size()) return incomplete("chunk", index.extents.size());
+  if (statistics.attachment_count != index.attachments.size())
+    return incomplete("attachment", index.attachments.size());
+  if (statistics.metadata_count != index.metadata.size()) return incomplete("metadata record", index.metadata.size());
+  if (statistics.channel_count != index.channels.size()) return incomplete("channel", index.channels.size());
   std::uint64_t counted = 0;
   for (const auto& [id, count] : statistics.channel_message_counts) {
-    if (!index.channels.contains(id)) return "its summary counts messages of a channel it does not list";
+    if (!index.channels.contains(id)) return {"its summary counts messages of a channel it does not list"};
     counted += count;
   }
-  if (counted != statistics.message_count) return "its summary's message counts do not add up";
+  if (counted != statistics.message_count) return {"its summary's message counts do not add up"};
   for (const auto& [id, channel] : index.channels) {
     if (channel.schema_id != kNoSchema && !index.schemas.contains(channel.schema_id)) {
-      return "its summary does not list every schema";
+      return incomplete("schema", index.schemas.size());
     }
   }
+  if (statistics.chunk_count == 0 && statistics.message_count != 0) return {"its messages are not indexed", true};
   return {};
 }
 
@@ -120,7 +124,7 @@ ByteView readBody(const InputFile& file, const RecordPlace& place, const ReaderO
   return body;
 }
 
-std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions& options, std::string& problem) {
+std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions& options, SummaryProblem& problem) {
   if (file.size() < kMagic.size() + kTailBytes) return std::nullopt;
   const std::uint64_t footer_at = file.size() - kTailBytes;
   std::array<std::byte, kTailBytes> tail;
@@ -136,7 +140,7 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
   if (footer.summary_start == 0) return std::nullopt;
   if (footer.summary_start < kMagic.size() || footer.summary_start > footer_at ||
       footer_at - footer.summary_start > options.max_chunk_bytes) {
-    problem = "its footer gives byte " + std::to_string(footer.summary_start) + " for a summary that cannot be there";
+    problem = {"its footer gives byte " + std::to_string(footer.summary_start) + " for a summary that cannot be there"};
     return std::nullopt;
   }
 
@@ -197,18 +201,18 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
     }
     std::ranges::sort(index.extents, {}, &Extent::offset);
     problem = inconsistency(index, has_statistics);
-    if (!problem.empty()) return std::nullopt;
+    if (!problem.text.empty()) return std::nullopt;
 
     RecordWalk walk(file, kMagic.size(), footer.summary_start);
     const std::optional<RecordPlace> first = walk.next();
     if (!first || first->opcode != Opcode::kHeader) return std::nullopt;  // the scan says so
     index.info.header = decodeHeader(readBody(file, *first, options, storage));
-    if (!coversData(file, index, std::move(pieces), first->end(), footer.summary_start, problem)) return std::nullopt;
+    if (!coversData(file, std::move(pieces), first->end(), footer.summary_start, problem)) return std::nullopt;
     index.info.file_bytes = index.info.complete_bytes = file.size();
     index.info.is_complete = index.info.has_all_data = index.info.has_summary = true;
     return index;
   } catch (const FormatError& error) {
-    problem = std::string("its summary is damaged: ") + error.what();
+    problem = {std::string("its summary is damaged: ") + error.what()};
     return std::nullopt;
   }
 }
@@ -219,10 +223,13 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
   if (magic != kMagic) {
     throw FormatError(file.path().string() + " is not an MCAP recording: it does not begin with the MCAP magic");
   }
-  std::string problem;
+  SummaryProblem problem;
   if (std::optional<FileIndex> index = readSummary(file, options, problem)) return std::move(*index);
   FileIndex index = scanFile(file, options);
-  if (index.info.problem.empty()) index.info.problem = problem;
+  if (index.info.problem.empty()) {
+    index.info.problem = problem.text;
+    index.info.is_unindexed = problem.is_omission;
+  }
   return index;
 }
 

@@ -38,7 +38,8 @@ struct FileInfo {
   std::uint64_t complete_bytes = 0;  // up to here everything is a whole record; file_bytes when is_complete
   bool has_all_data = false;         // its data section ends as it should: if it was cut, then only in its index
   bool has_summary = false;          // the index came from the file's summary, not from reading the whole file
-  std::string problem{};  // where it was cut and why, or why its summary was not used; empty when all is well
+  std::string problem{};      // where it was cut and why, or why its summary was not used; empty when all is well
+  bool is_unindexed = false;  // the problem is only that the summary leaves out what the format lets it leave out
 };
 
 /// A stretch of the file that holds messages: a chunk, or consecutive records outside of any chunk.
@@ -64,9 +65,15 @@ struct FileIndex {
 /// Throws FormatError when the file is not MCAP, or is damaged before its end (see ReaderOptions::on_damage).
 [[nodiscard]] FileIndex indexFile(const InputFile& file, const ReaderOptions& options);
 
-/// The two ways, for indexFile: nothing when the file has no summary or one that cannot be trusted, `problem` says why.
+/// Why a summary is not used.
+struct SummaryProblem {
+  std::string text{};
+  bool is_omission = false;  // see FileInfo::is_unindexed
+};
+
+/// The two ways, for indexFile: nothing when the file has no summary or one that cannot be used, `problem` says why.
 [[nodiscard]] std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions& options,
-                                                   std::string& problem);
+                                                   SummaryProblem& problem);
 [[nodiscard]] FileIndex scanFile(const InputFile& file, const ReaderOptions& options);
 
 /// A record's place in the file.

@@ -16,6 +16,46 @@ constexpr std::uint64_t kAttachmentHeadBytes = 1 << 20;
 
 /// What a DataEnd holds; another length is another record with a damaged opcode.
 constexpr std::uint64_t kDataEndBytes = 4;
+/// Where to go on behind damage is looked for in pieces that grow from this up to kRunBytes: it may be near, often.
+constexpr std::uint64_t kSearchBytes = 4 << 10;
+
+/// A number in the file; 0 behind its end.
+template <std::unsigned_integral Number>
+std::uint64_t numberAt(const InputFile& file, std::uint64_t offset) {
+  Number value = 0;
+  if (offset <= file.size() && sizeof value <= file.size() - offset) {
+    file.read(offset, std::as_writable_bytes(std::span(&value, 1)));
+  }
+  return value;
+}
+
+/// Whether the lengths in the record there fit one another, for the kinds that have several. That is more than chance
+/// gives, so it also tells such a record from other bytes.
+bool fits(const InputFile& file, const RecordPlace& place) {
+  const std::uint64_t body = place.offset + kRecordHeadBytes;
+  switch (place.opcode) {
+    case Opcode::kChunk: {
+      constexpr std::uint64_t kNameAt = 8 + 8 + 8 + 4, kLongestName = 4;
+      const std::uint64_t name = numberAt<std::uint32_t>(file, body + kNameAt);
+      if (name > kLongestName || place.body_length < kNameAt + 4 + name + 8) return false;
+      return numberAt<std::uint64_t>(file, body + kNameAt + 4 + name) == place.body_length - (kNameAt + 4 + name + 8);
+    }
+    case Opcode::kMessageIndex: {
+      constexpr std::uint64_t kEntryBytes = 8 + 8;
+      const std::uint64_t entries = numberAt<std::uint32_t>(file, body + 2);
+      return entries % kEntryBytes == 0 && place.body_length == 2 + 4 + entries;
+    }
+    case Opcode::kAttachment: {
+      constexpr std::uint64_t kNameAt = 8 + 8, kFixedBytes = kNameAt + 4 + 4 + 8 + 4;
+      const std::uint64_t name = numberAt<std::uint32_t>(file, body + kNameAt);
+      const std::uint64_t media = numberAt<std::uint32_t>(file, body + kNameAt + 4 + name);
+      const std::uint64_t known = kFixedBytes + name + media;
+      if (place.body_length < known) return false;
+      return numberAt<std::uint64_t>(file, body + kNameAt + 4 + name + 4 + media) == place.body_length - known;
+    }
+    default: return true;
+  }
+}
 
 class Scan {
  public:
@@ -70,55 +110,48 @@ class Scan {
     (void)loader_.guarded(extent, [&] { decode(readBody(file_, place, options_, storage_)); });
   }
 
-  /// Where the records cannot be followed any more, because none is there or because a chunk's own lengths disagree, a
-  /// caller who wants what is left gets what follows from the next chunk on. False when all is well or nothing follows.
+  /// Where the records cannot be followed any more, because none is there or because the lengths in one disagree, a
+  /// caller who wants what is left gets what follows from the next chunk or attachment on. False when all is well or
+  /// nothing follows.
   bool goOnBehindDamage(RecordWalk& walk, const std::optional<RecordPlace>& place) {
-    const bool is_torn =
-        place ? place->opcode == Opcode::kChunk && !looksLikeChunk(place->offset) : !walk.problem().empty();
+    const bool is_torn = place ? !fits(file_, *place) : !walk.problem().empty();
     if (!options_.on_damage || !is_torn) return false;
     const std::uint64_t from = place ? place->offset : walk.position();
-    const std::optional<std::uint64_t> next = nextChunk(from + 1);
+    const std::optional<std::uint64_t> next = searchFrom(from + 1);
     if (!next) return false;
     closeRun();
-    options_.on_damage({from, *next - from, place ? "the lengths of the chunk disagree" : walk.problem()});
+    options_.on_damage(
+        {from, *next - from, place ? "the lengths of the " + opcodeName(place->opcode) + " disagree" : walk.problem()});
     walk.moveTo(*next);
     return true;
   }
 
-  /// Whether a chunk begins there, judging by its lengths, which have to fit one another.
-  [[nodiscard]] bool looksLikeChunk(std::uint64_t offset) const {
-    constexpr std::uint64_t kFixedBytes = kRecordHeadBytes + 8 + 8 + 8 + 4;  // up to the name of the compression
-    std::array<std::byte, kFixedBytes + 4 + 4 + 8> head{};                   // of which the longest has four letters
-    const std::uint64_t left = file_.size() - offset;
-    file_.read(offset, std::span(head).first(static_cast<std::size_t>(std::min<std::uint64_t>(left, head.size()))));
-    try {
-      ByteReader in(head);
-      if (Opcode{in.number<std::uint8_t>()} != Opcode::kChunk) return false;
-      const auto length = in.number<std::uint64_t>();
-      (void)in.bytes(kFixedBytes - kRecordHeadBytes);
-      const std::string compression = in.string();
-      (void)compressionFromName(compression);
-      const std::uint64_t fields = kFixedBytes - kRecordHeadBytes + 4 + compression.size() + 8;
-      return length <= left - kRecordHeadBytes && length >= fields && in.number<std::uint64_t>() == length - fields;
-    } catch (const FormatError&) {
-      return false;
-    }
-  }
-
-  [[nodiscard]] std::optional<std::uint64_t> nextChunk(std::uint64_t from) {
-    for (; from + kRecordHeadBytes < file_.size(); from += kRunBytes) {
+  /// Where the next chunk or attachment begins. A recording that is attached to this one has chunks that are not of
+  /// this one: attachments are found whole, and of one whose own beginning is damaged the magic tells.
+  [[nodiscard]] std::optional<std::uint64_t> searchFrom(std::uint64_t from) {
+    bool is_inside = false;  // of a recording in an attachment
+    std::uint64_t size = kSearchBytes;
+    for (; from + kRecordHeadBytes < file_.size(); from += size, size = std::min(2 * size, kRunBytes)) {
+      // Records that begin in this piece are looked at whole, and so is a magic: it ends behind it.
       const std::span<std::byte> window =
-          storage_.resize(static_cast<std::size_t>(std::min(kRunBytes, file_.size() - from)));
+          storage_.resize(static_cast<std::size_t>(std::min(size + kMagic.size() - 1, file_.size() - from)));
       file_.read(from, window);
-      for (auto at = window.begin(); (at = std::find(at, window.end(), std::byte{0x06})) != window.end(); ++at) {
-        const std::uint64_t offset = from + static_cast<std::uint64_t>(at - window.begin());
-        if (offset + kRecordHeadBytes < file_.size() && looksLikeChunk(offset)) return offset;
+      for (std::size_t i = 0; i < std::min<std::uint64_t>(size, window.size()); ++i) {
+        if (std::ranges::equal(ByteView(window).subspan(i).first(std::min(kMagic.size(), window.size() - i)), kMagic)) {
+          is_inside = !is_inside;
+        }
+        const auto opcode = Opcode{std::to_integer<std::uint8_t>(window[i])};
+        if (is_inside || (opcode != Opcode::kChunk && opcode != Opcode::kAttachment)) continue;
+        const RecordPlace place{
+            .opcode = opcode, .offset = from + i, .body_length = numberAt<std::uint64_t>(file_, from + i + 1)};
+        if (place.body_length < file_.size() && place.end() <= file_.size() && fits(file_, place)) return place.offset;
       }
     }
     return std::nullopt;
   }
 
   void take(const RecordPlace& place) {
+    noteHiddenChunk(place);
     const bool belongs_to_run =
         place.opcode == Opcode::kSchema || place.opcode == Opcode::kChannel || place.opcode == Opcode::kMessage;
     if (!belongs_to_run || run_.length + place.length() > kRunBytes) closeRun();
@@ -136,6 +169,19 @@ class Scan {
         index_.metadata.push_back({.offset = place.offset, .length = place.length(), .name = std::move(metadata.name)});
       });
     }
+  }
+
+  /// The messages of a chunk are indexed right behind it. Where an index follows a record of a kind that nobody knows,
+  /// that was a chunk before its first byte changed.
+  void noteHiddenChunk(const RecordPlace& place) {
+    if (place.opcode != Opcode::kMessageIndex) {
+      const bool is_known = place.opcode <= Opcode::kDataEnd;
+      hidden_ = is_known || previous_ == Opcode::kChunk ? std::nullopt : std::optional(place);
+    } else if (hidden_ && options_.on_damage) {
+      options_.on_damage({hidden_->offset, hidden_->length(), "it is indexed as a chunk, and is of no known kind"});
+      hidden_.reset();
+    }
+    previous_ = place.opcode;
   }
 
   void takeAttachment(const RecordPlace& place) {
@@ -245,7 +291,9 @@ class Scan {
   ExtentLoader loader_;
   Buffer storage_;
   FileIndex index_;
-  Extent run_{.is_chunk = false};  // consecutive records outside of chunks; empty when length is 0
+  Opcode previous_{};                  // of the record before
+  std::optional<RecordPlace> hidden_;  // a record that may have been a chunk
+  Extent run_{.is_chunk = false};      // consecutive records outside of chunks; empty when length is 0
 };
 
 }  // namespace

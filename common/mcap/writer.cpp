@@ -158,6 +158,11 @@ void Writer::close() {
   file_.close();
 }
 
+void Writer::discard() noexcept {
+  is_closed_ = true;
+  file_.discard();
+}
+
 WriterStatistics Writer::statistics() const {
   return {.messages = messages_,
           .message_bytes = message_bytes_,

@@ -85,6 +85,8 @@ class Writer {
   void sync();
   /// Writes the summary and closes. Calling it again does nothing.
   void close();
+  /// Takes the file away: a recording that is not to be finished. Nothing can be done with it any more.
+  void discard() noexcept;
 
   [[nodiscard]] WriterStatistics statistics() const;
 

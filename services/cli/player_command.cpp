@@ -106,12 +106,15 @@ void tell(const Arguments& arguments) {
 }
 
 void ask(const Arguments& arguments, ExitCode& exit_code) {
-  CellClient client(findReplay(arguments).place);
+  const auto [place, status] = findReplay(arguments);
+  CellClient client(place);
   msg::ReplayRequest request = arguments.request;
   request.request_id(CellClient::newRequestId());
-  // A step is answered when it is done; replays manage ten messages in a millisecond.
+  // A step is answered when it is done; replays manage ten messages in a millisecond. One message of a rare topic may
+  // have all others in front of it.
+  const std::uint64_t sent_at_most = request.topic().size() > 0 ? status.total() : request.messages();
   const auto patience =
-      CellClient::kPatience + std::chrono::milliseconds(std::min<std::uint64_t>(request.messages(), 3'600'000));
+      CellClient::kPatience + std::chrono::milliseconds(std::min<std::uint64_t>(sent_at_most, 3'600'000));
   const auto reply = client.ask<msg::ReplayRequest, msg::ReplayReply>(
       dds::topics::kReplayRequest, request, dds::topics::kReplayReply,
       [&](const msg::ReplayReply& one) { return one.request_id() == request.request_id(); }, kReplayer, patience);

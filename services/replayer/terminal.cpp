@@ -22,12 +22,14 @@ void takeTerminal() noexcept {
   is_taken = tcsetattr(STDIN_FILENO, TCSANOW, &as_taken) == 0;
 }
 
-/// Ctrl-Z: the shell gets its terminal as it was, and who comes back takes it again.
+/// Ctrl-Z: the shell gets its terminal as it was.
 void suspend(int /*signal*/) {
   restoreTerminal();
   raise(SIGSTOP);
-  takeTerminal();
 }
+
+/// fg: who comes back, or comes from the background, takes the terminal; bg: not yet.
+void resume(int /*signal*/) { takeTerminal(); }
 
 }  // namespace
 
@@ -67,11 +69,15 @@ Terminal::Terminal() {
   as_taken.c_cc[VMIN] = 1;
   as_taken.c_cc[VTIME] = 0;
   as_taken.c_cc[VQUIT] = _POSIX_VDISABLE;  // Ctrl-\ would leave the terminal as it is
+  std::signal(SIGTSTP, suspend);
+  std::signal(SIGCONT, resume);
   takeTerminal();
-  if (is_taken) std::signal(SIGTSTP, suspend);
 }
 
-Terminal::~Terminal() { restoreTerminal(); }
+Terminal::~Terminal() {
+  std::signal(SIGCONT, SIG_DFL);
+  restoreTerminal();
+}
 
 void restoreTerminal() noexcept {
   if (is_taken.exchange(false)) tcsetattr(STDIN_FILENO, TCSANOW, &as_found);

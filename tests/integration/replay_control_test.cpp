@@ -301,6 +301,7 @@ class OnTerminal {
   void strike(const std::string& keys) const {
     ASSERT_EQ(write(terminal_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
   }
+  void signal(int number) const { ASSERT_EQ(kill(pid_, number), 0); }
   /// Whether lines are edited and echoed, as a shell wants them.
   [[nodiscard]] bool isAsFound() const {
     termios attributes{};
@@ -341,6 +342,10 @@ TEST_F(ReplayControl, ObeysKeysAndGivesTheTerminalBack) {
     EXPECT_TRUE(eventually([&] {
       return std::abs(player({"status"}).at("position_s").get<double>() - std::max(0.0, before_s - 1.0)) < 1e-6;
     }));
+    replay.signal(SIGTSTP);  // Ctrl-Z
+    EXPECT_TRUE(eventually([&] { return replay.isAsFound(); }));
+    replay.signal(SIGCONT);  // fg
+    EXPECT_TRUE(eventually([&] { return !replay.isAsFound(); }));
     replay.strike("q");
     EXPECT_EQ(replay.exitCode(), 0);
     EXPECT_TRUE(replay.isAsFound());

@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <cctype>
 
-#include "base/error.hpp"
 #include "mcap/bytes.hpp"
 
 namespace baton {
 namespace {
 
 constexpr std::size_t kBufferBytes = 1U << 16;
-
-std::filesystem::path partOf(std::filesystem::path path) { return path += ".part"; }
 
 }  // namespace
 
@@ -24,13 +21,7 @@ std::string fileNameFor(const std::string& topic) {
   return name.substr(0, kMaxLength);
 }
 
-ExportFile::ExportFile(std::filesystem::path path)
-    : path_(std::move(path)), file_(partOf(path_), mcap::OutputFile::IfExists::kReplace) {}
-
-ExportFile::~ExportFile() {
-  std::error_code ignored;
-  if (!is_finished_) std::filesystem::remove(partOf(path_), ignored);
-}
+ExportFile::ExportFile(const std::filesystem::path& path) : file_(path, mcap::OutputFile::IfExists::kReplace) {}
 
 void ExportFile::add(std::string_view text) {
   text_ += text;
@@ -45,10 +36,6 @@ void ExportFile::flush() {
 void ExportFile::finish() {
   flush();
   file_.close();
-  std::error_code error;
-  std::filesystem::rename(partOf(path_), path_, error);
-  if (error) throw UnavailableError(path_.string() + ": cannot be written: " + error.message());
-  is_finished_ = true;
 }
 
 }  // namespace baton

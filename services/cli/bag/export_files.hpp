@@ -12,15 +12,11 @@ namespace baton {
 /// A file name for a topic: what could mean a folder, or surprise a shell, becomes '_'.
 [[nodiscard]] std::string fileNameFor(const std::string& topic);
 
-/// Gathers text and writes it to PATH.part, which becomes PATH when it is finished.
+/// Gathers text; the file is there once it is finished.
 class ExportFile {
  public:
   /// Throws UnavailableError when it cannot be created.
-  explicit ExportFile(std::filesystem::path path);
-  /// Takes away what was not finished.
-  ~ExportFile();
-  ExportFile(const ExportFile&) = delete;
-  ExportFile& operator=(const ExportFile&) = delete;
+  explicit ExportFile(const std::filesystem::path& path);
 
   void add(std::string_view text);
   void finish();
@@ -28,10 +24,8 @@ class ExportFile {
  private:
   void flush();
 
-  std::filesystem::path path_;
   mcap::OutputFile file_;
   std::string text_;
-  bool is_finished_ = false;
 };
 
 }  // namespace baton

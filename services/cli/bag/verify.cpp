@@ -176,7 +176,8 @@ void judge(const std::vector<Part>& parts, Verification& result) {
     for (const auto& [offset, text] : part.damage) result.damage.push_back(text);
     const mcap::FileInfo& info = part.reader->info();
     if (info.problem.empty()) continue;
-    (info.is_complete ? result.damage : result.cuts).push_back(part.file + ": " + info.problem);
+    auto& findings = !info.is_complete ? result.cuts : info.is_unindexed ? result.missing : result.damage;
+    findings.push_back(part.file + ": " + info.problem);
   }
   if (parts[0].run.empty()) {
     result.missing.emplace_back("it was not recorded by Baton: nobody says what was sent");

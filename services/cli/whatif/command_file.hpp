@@ -18,9 +18,12 @@ class CommandFile {
   static constexpr const char* kTopic = "whatif_command";
   static constexpr const char* kType = "baton::msg::JointCommand";
 
-  /// Replaces a file that is there already. Throws UnavailableError.
+  /// Replaces a file that is there already, once it is closed. Throws UnavailableError.
   /// @param controller  what the commands call their author.  @param step_ns  length of a step.
   CommandFile(const std::filesystem::path& file, const std::string& controller, std::int64_t step_ns);
+  ~CommandFile() { writer_.discard(); }
+  CommandFile(const CommandFile&) = delete;
+  CommandFile& operator=(const CommandFile&) = delete;
 
   void write(const RecordedStep& step, const JointVector& effort, std::uint64_t inputs_hash);
   /// @param about  of what this is: metadata record `baton.whatif`.

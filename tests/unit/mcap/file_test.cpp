@@ -64,6 +64,42 @@ TEST_F(FileTest, AShortWriteIsAnErrorThatNamesFileAndBytes) {
   EXPECT_EQ(std::filesystem::file_size(path), 1000U);
 }
 
+TEST_F(FileTest, WhatIsReplacedIsThereUntilItsSuccessorIsWhole) {
+  saveFile(path, payload(100, 1));
+  const std::filesystem::path part = path.string() + ".part";
+  {
+    OutputFile file(path, OutputFile::IfExists::kReplace);
+    file.write(payload(20, 2));
+    file.sync();
+    EXPECT_EQ(loadFile(path), payload(100, 1));
+    file.close();
+  }
+  EXPECT_EQ(loadFile(path), payload(20, 2));
+  EXPECT_FALSE(std::filesystem::exists(part));
+  {
+    OutputFile file(path, OutputFile::IfExists::kReplace);
+    file.write(payload(30, 3));
+  }
+  EXPECT_EQ(loadFile(path), payload(20, 2)) << "not closed";
+  EXPECT_FALSE(std::filesystem::exists(part));
+  {
+    const FileSizeLimit limit(1000);
+    OutputFile file(path, OutputFile::IfExists::kReplace);
+    EXPECT_THROW(file.write(payload(2000, 4)), WriteError);
+    EXPECT_THROW(file.close(), WriteError);
+  }
+  EXPECT_EQ(loadFile(path), payload(20, 2)) << "no room";
+  EXPECT_FALSE(std::filesystem::exists(part));
+}
+
+TEST_F(FileTest, WhatIsDiscardedIsGone) {
+  OutputFile file(path, OutputFile::IfExists::kRefuse);
+  file.write(payload(10, 1));
+  file.discard();
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_THROW(file.write(payload(10, 1)), WriteError);
+}
+
 TEST_F(FileTest, AFullDiskIsReportedAtOnce) {
   OutputFile file("/dev/full", OutputFile::IfExists::kReplace);
   const std::string message = messageOf([&] { file.write(payload(10, 1)); });

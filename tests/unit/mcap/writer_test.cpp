@@ -102,9 +102,9 @@ TEST_P(WriterTest, SummaryAgreesWithWhatIsInTheData) {
   }
   const InputFile file(path);
   const ReaderOptions reader_options;
-  std::string problem;
+  SummaryProblem problem;
   const std::optional<FileIndex> summary = readSummary(file, reader_options, problem);
-  ASSERT_TRUE(summary) << problem;
+  ASSERT_TRUE(summary) << problem.text;
   const FileIndex scan = scanFile(file, reader_options);
   EXPECT_TRUE(scan.info.is_complete);
   EXPECT_EQ(summary->schemas, scan.schemas);
