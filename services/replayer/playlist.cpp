@@ -31,9 +31,9 @@ Playlist::Playlist(const ReplayOptions& options)
   if (!reader_.info().is_complete) noteProblem("the recording was cut: " + reader_.info().problem);
   checkNames(options);
   const auto logTimeAt = [&](double seconds) {
-    return start_ns() + static_cast<std::uint64_t>(std::min(seconds * 1e9, 9e18));
+    return startTime() + static_cast<std::uint64_t>(std::min(seconds * 1e9, 9e18));
   };
-  filter_.start_time_ns = options.from_s ? logTimeAt(*options.from_s) : start_ns();
+  filter_.start_time_ns = options.from_s ? logTimeAt(*options.from_s) : startTime();
   if (options.to_s) filter_.end_time_ns = logTimeAt(*options.to_s);
   chooseChannels(options);
   total_ = countMessages(options.from_s || options.to_s);
@@ -108,14 +108,14 @@ bool Playlist::hasTopic(const std::string& recorded_name) const {
                      [&](const auto& entry) { return reader_.channels().at(entry.first).topic == recorded_name; });
 }
 
-std::uint64_t Playlist::duration_ns() const {
-  return std::max(reader_.statistics().end_time_ns, start_ns()) - start_ns();
+std::uint64_t Playlist::duration() const {
+  return std::max(reader_.statistics().end_time_ns, startTime()) - startTime();
 }
 
-std::uint64_t Playlist::from_ns() const { return std::min(filter_.start_time_ns - start_ns(), duration_ns()); }
+std::uint64_t Playlist::firstPosition() const { return std::min(filter_.start_time_ns - startTime(), duration()); }
 
-std::uint64_t Playlist::to_ns() const {
-  return std::min(std::max(filter_.end_time_ns, start_ns()) - start_ns(), duration_ns());
+std::uint64_t Playlist::lastPosition() const {
+  return std::min(std::max(filter_.end_time_ns, startTime()) - startTime(), duration());
 }
 
 }  // namespace baton
