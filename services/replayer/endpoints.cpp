@@ -5,14 +5,11 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "mcap/lookup.hpp"
 
 namespace baton {
 namespace {
-
-std::string valueOf(const std::map<std::string, std::string>& values, const std::string& key) {
-  const auto found = values.find(key);
-  return found == values.end() ? "" : found->second;
-}
+using mcap::valueOf;
 
 /// The recorded QoS, from lines of "name: value". "qos" is what eProsima's DDS Record & Replay keeps too, four truth
 /// values, and in our older recordings words; "qos_policies" has words, for all that is known of the writer.

@@ -3,21 +3,17 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "mcap/lookup.hpp"
 #include "schema/error.hpp"
 #include "schema/idl_parser.hpp"
 
 namespace baton {
 
-std::string valueOf(const mcap::StringMap& map, const std::string& key) {
-  const auto found = map.find(key);
-  return found == map.end() ? "" : found->second;
-}
-
 std::string typeNameOf(const mcap::Channel& channel, const mcap::Schema* schema) {
-  return schema != nullptr ? schema->name : valueOf(channel.metadata, "type");
+  return schema != nullptr ? schema->name : mcap::valueOf(channel.metadata, "type");
 }
 
-std::string serviceOf(const mcap::Channel& channel) { return valueOf(channel.metadata, "service"); }
+std::string serviceOf(const mcap::Channel& channel) { return mcap::valueOf(channel.metadata, "service"); }
 
 const schema::Type* RecordedTypes::typeOf(const mcap::Channel& channel, const mcap::Schema* schema) {
   const auto [known, is_new] = types_.try_emplace(channel.id, nullptr);

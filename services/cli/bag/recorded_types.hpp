@@ -10,9 +10,6 @@
 
 namespace baton {
 
-/// Empty when the map has no such key.
-[[nodiscard]] std::string valueOf(const mcap::StringMap& map, const std::string& key);
-
 /// The message's type as the channel's metadata or the schema names it; empty when neither does.
 [[nodiscard]] std::string typeNameOf(const mcap::Channel& channel, const mcap::Schema* schema);
 [[nodiscard]] inline std::string typeNameOf(const mcap::MessageView& message) {
