@@ -31,10 +31,16 @@ class RecordedTypes {
   }
 
  private:
+  /// What has become of a schema's text, which is read once however many channels have it.
+  struct Parsed {
+    schema::TypeSet types;
+    std::string problem;  // why there are no types
+  };
+  [[nodiscard]] const Parsed& parsed(const mcap::Schema& schema);
   [[nodiscard]] const schema::Type* read(const mcap::Channel& channel, const mcap::Schema& schema);
 
   std::function<void(const std::string&)> complain_;
-  std::map<mcap::SchemaId, schema::TypeSet> sets_;
+  std::map<mcap::SchemaId, Parsed> parsed_;
   std::map<mcap::ChannelId, const schema::Type*> types_;
 };
 
