@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -173,6 +174,28 @@ TEST(ParticipantTest, TheTextOfAWritersQosSaysWhatItPromises) {
             "reliability: best_effort\ndurability: volatile\nownership: exclusive\nkeyed: false\n"
             "deadline_ns: 20000000\nliveliness: manual_by_topic\nlease_ns: 3000000000\nownership_strength: 7\n" +
                 partition);
+}
+
+TEST(ParticipantTest, WhatIsLongerThanDdsCanSayIsForEver) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000, kLongest_s = std::numeric_limits<std::int32_t>::max() - 1;
+  Signal signal;
+  Watch watch(signal, "cell");
+  Participant recorder(memberOptions("recorder", "cell")), plant(memberOptions("plant", "cell"));
+  watch.listenTo(recorder);
+  const auto qosOf = [&](std::int64_t duration_ns) {
+    const RawWriter writer(plant, {.topic = "topic",
+                                   .type = "baton::test::A",
+                                   .deadline_ns = duration_ns,
+                                   .liveliness = {.lease_ns = duration_ns}});
+    EXPECT_TRUE(signal.waitUntil([&] { return watch.found().contains(writer.guid()); }));
+    return watch.found().at(writer.guid()).qos_text;
+  };
+  const std::string longest_ns = std::to_string(kLongest_s * kSecond_ns);
+  EXPECT_NE(qosOf(kLongest_s * kSecond_ns).find("deadline_ns: " + longest_ns + "\nlease_ns: " + longest_ns + "\n"),
+            std::string::npos);
+  for (const std::int64_t duration_ns : {(kLongest_s + 1) * kSecond_ns, std::numeric_limits<std::int64_t>::max()}) {
+    EXPECT_EQ(qosOf(duration_ns).find("_ns"), std::string::npos);
+  }
 }
 
 TEST(ParticipantTest, WritersAreHeardInOtherPartitionsAsWell) {
