@@ -212,6 +212,7 @@ TEST(ParticipantTest, WritersAreHeardInOtherPartitionsAsWell) {
   ParticipantOptions nowhere = memberOptions("nowhere", "");
   nowhere.partition.clear();
   members.push_back(std::make_unique<Participant>(nowhere));
+  readers.reserve(members.size());
   for (const auto& member : members) {
     readers.push_back(std::make_unique<RawReader>(
         *member, EndpointOptions{.topic = "topic", .type = "baton::test::A", .profile = Profile::kEvent},
