@@ -59,10 +59,14 @@ void applyOptions(const EndpointOptions& options, Qos& qos) {
   }
 }
 
+/// For ever, too, when it is longer than DDS can say.
 eprosima::fastrtps::Duration_t durationOf(std::int64_t duration_ns) {
-  if (duration_ns <= 0) return eprosima::fastrtps::c_TimeInfinite;
-  return {static_cast<std::int32_t>(duration_ns / 1'000'000'000),
-          static_cast<std::uint32_t>(duration_ns % 1'000'000'000)};
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  const std::int64_t seconds = duration_ns / kSecond_ns;
+  if (duration_ns <= 0 || seconds >= eprosima::fastrtps::Time_t::INFINITE_SECONDS) {
+    return eprosima::fastrtps::c_TimeInfinite;
+  }
+  return {static_cast<std::int32_t>(seconds), static_cast<std::uint32_t>(duration_ns % kSecond_ns)};
 }
 
 void applyPromises(const EndpointOptions& options, DataWriterQos& qos) {

@@ -15,7 +15,7 @@ namespace baton::dds {
 struct Liveliness {
   enum class Kind { kAutomatic, kManualByParticipant, kManualByTopic };
   Kind kind = Kind::kAutomatic;
-  std::int64_t lease_ns = 0;  // 0: for ever
+  std::int64_t lease_ns = 0;  // 0, and beyond 68 years: for ever
   bool operator==(const Liveliness&) const = default;
 };
 
@@ -28,7 +28,7 @@ struct EndpointOptions {
   bool exclusive_ownership = false;  // likewise
   bool best_effort = false;          // writer: does not resend; reader: also match writers that do not
   // What readers may demand of a writer beyond the profile; readers of Baton demand nothing of it.
-  std::int64_t deadline_ns = 0;          // writer: promises a sample at least this often; 0: promises none
+  std::int64_t deadline_ns = 0;          // writer: promises a sample at least this often; 0, and beyond 68 years: none
   Liveliness liveliness{};               // writer
   std::uint32_t ownership_strength = 0;  // writer, exclusive
   bool operator==(const EndpointOptions&) const = default;

@@ -53,7 +53,7 @@ class Ledger {
     return book(streamOf(key), sequence, payload);
   }
   /// These came and found no room.
-  void dropped(Stream& stream, std::uint64_t first_sequence, std::uint64_t last_sequence);
+  void dropped(Stream& booked, std::uint64_t first_sequence, std::uint64_t last_sequence);
   /// Nothing is asked about this topic: it is left out on purpose.
   void leaveOut(const std::string& topic) { left_out_.insert(topic); }
   /// Something that ought to be in the recording cannot be.
@@ -82,7 +82,7 @@ class Ledger {
   /// One sentence for each thing that this certificate says otherwise than certificate().
   [[nodiscard]] std::vector<std::string> disagreements(const std::string& certificate) const;
   /// A row of it.
-  [[nodiscard]] nlohmann::ordered_json rowOf(const Stream& stream) const;
+  [[nodiscard]] nlohmann::ordered_json rowOf(const Stream& booked) const;
   [[nodiscard]] const std::map<Key, ReceivedStream>& streams() const { return streams_; }
   [[nodiscard]] const std::vector<Gap>& gaps() const { return gaps_; }
   [[nodiscard]] const std::set<std::string>& leftOut() const { return left_out_; }

@@ -35,6 +35,7 @@ std::vector<fs::path> furtherPartsOf(const fs::path& recording) {
     }
   }
   std::vector<fs::path> result;
+  result.reserve(parts.size());
   for (const auto& [index, part] : parts) result.push_back(part);
   return result;
 }

@@ -1,4 +1,6 @@
 /// What a scenario lets go wrong.
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -23,19 +25,13 @@ std::vector<std::string> topicsOf(const std::string& service) {
   return {dds::topics::kJointCommand.name, dds::topics::kShadowCommand.name};
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : " or ") + word;
-  return text;
-}
-
 void readMessageFault(const YamlMap& map, const Scenario& scenario, Fault& fault) {
   const std::vector<std::string> topics = topicsOf(fault.service);
   const YamlNode topic = map["topic"];
   fault.topic = topic.text(64);
   if (std::find(topics.begin(), topics.end(), fault.topic) == topics.end()) {
     topic.refuse(topics.empty() ? "no topic: the recorder answers no steps"
-                                : "a topic of " + fault.service + ": " + joined(topics));
+                                : fmt::format("a topic of {}: {}", fault.service, fmt::join(topics, " or ")));
   }
   if (fault.service == kPlantName && !isOfValues(fault.kind)) {
     map["do"].refuse(

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dds/codec.hpp"
+#include "mcap/lookup.hpp"
 #include "run_manifest.hpp"
 
 namespace baton {
@@ -297,9 +298,7 @@ void RecordingSession::addLosses(msg::RecorderStatus& status) const {
     if (stream.received->second.missing == 0 || stream.is_status) continue;
     msg::WriterLoss loss;
     loss.topic(stream.topic().substr(0, kMaxTopicText));
-    if (const auto service = stream.metadata.find("service"); service != stream.metadata.end()) {
-      loss.service(service->second);
-    }
+    loss.service(mcap::valueOf(stream.metadata, "service"));
     loss.lost(stream.received->second.missing);
     status.losses().push_back(loss);
   }

@@ -1,18 +1,15 @@
 #include "endpoints.hpp"
 
-#include <algorithm>
 #include <charconv>
+#include <limits>
 #include <sstream>
 
 #include "base/error.hpp"
+#include "mcap/lookup.hpp"
 
 namespace baton {
 namespace {
-
-std::string valueOf(const std::map<std::string, std::string>& values, const std::string& key) {
-  const auto found = values.find(key);
-  return found == values.end() ? "" : found->second;
-}
+using mcap::valueOf;
 
 /// The recorded QoS, from lines of "name: value". "qos" is what eProsima's DDS Record & Replay keeps too, four truth
 /// values, and in our older recordings words; "qos_policies" has words, for all that is known of the writer.
@@ -36,13 +33,14 @@ std::map<std::string, std::string> recordedQos(const mcap::StringMap& metadata) 
   return values;
 }
 
-/// 0 for what is not recorded, or is no number.
+/// 0 for what is not recorded, negative, or no number; the largest there is for what is beyond it.
 template <class Number>
 Number numberOf(const std::map<std::string, std::string>& values, const std::string& key) {
   const std::string text = valueOf(values, key);
   Number number = 0;
-  std::from_chars(text.data(), text.data() + text.size(), number);
-  return std::max<Number>(number, 0);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (end != text.data() + text.size() || text.starts_with('-')) return 0;
+  return error == std::errc::result_out_of_range ? std::numeric_limits<Number>::max() : number;
 }
 
 dds::Liveliness livelinessOf(const std::map<std::string, std::string>& qos) {

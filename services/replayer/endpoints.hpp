@@ -10,7 +10,7 @@
 namespace baton {
 
 /// Topic, type and QoS of a recorded channel, from its metadata "type", "qos" and "qos_policies" and its schema (may be
-/// null). The QoS /// are the original's, as far as a reader can demand them: reliability, durability, deadline,
+/// null). The QoS are the original's, as far as a reader can demand them: reliability, durability, deadline,
 /// liveliness, ownership. Who matched the original matches its replay, and nobody else. What is not recorded is
 /// promised: reliable, and lasting for late joiners. Two things are not the original's. A lifespan would end what is
 /// sent with its old timestamp before anybody reads it; and how many samples the writer kept for late joiners is in no

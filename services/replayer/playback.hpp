@@ -57,8 +57,8 @@ class Playback {
   [[nodiscard]] std::uint32_t passes() const { return plan_.passes; }
   /// Where it stands, in log time.
   [[nodiscard]] std::uint64_t position(std::int64_t now_ns) const;
-  /// Log time that has been played, without what was skipped.
-  [[nodiscard]] std::uint64_t played_ns() const { return played_ns_; }
+  /// Log time that has been played [ns], without what was skipped.
+  [[nodiscard]] std::uint64_t playedTime() const { return played_ns_; }
 
  private:
   void hold(std::int64_t now_ns);

@@ -8,15 +8,10 @@
 #include "control/nearest_name.hpp"
 #include "dds/topics.hpp"
 #include "endpoints.hpp"
+#include "mcap/lookup.hpp"
 
 namespace baton {
 namespace {
-
-std::vector<std::string> topicNames(const mcap::Reader& reader) {
-  std::set<std::string> names;
-  for (const auto& [id, channel] : reader.channels()) names.insert(channel.topic);
-  return {names.begin(), names.end()};
-}
 
 /// A replay that was recorded would be obeyed, and taken for this one.
 bool isReplayersOwn(const std::string& topic) {
@@ -30,11 +25,8 @@ Playlist::Playlist(const ReplayOptions& options)
     : reader_(options.file, {.on_damage = [this](const mcap::Damage& damage) { noteDamage(damage); }}) {
   if (!reader_.info().is_complete) noteProblem("the recording was cut: " + reader_.info().problem);
   checkNames(options);
-  const auto logTimeAt = [&](double seconds) {
-    return start_ns() + static_cast<std::uint64_t>(std::min(seconds * 1e9, 9e18));
-  };
-  filter_.start_time_ns = options.from_s ? logTimeAt(*options.from_s) : start_ns();
-  if (options.to_s) filter_.end_time_ns = logTimeAt(*options.to_s);
+  filter_.start_time_ns = mcap::logTimeAt(reader_, options.from_s.value_or(0.0));
+  if (options.to_s) filter_.end_time_ns = mcap::logTimeAt(reader_, *options.to_s);
   chooseChannels(options);
   total_ = countMessages(options.from_s || options.to_s);
   rewind();
@@ -53,7 +45,7 @@ void Playlist::noteDamage(const mcap::Damage& damage) {
 }
 
 void Playlist::checkNames(const ReplayOptions& options) const {
-  const std::vector<std::string> known = topicNames(reader_);
+  const std::vector<std::string> known = mcap::topicNames(reader_);
   const auto check = [&](const std::string& topic) {
     if (!std::binary_search(known.begin(), known.end(), topic)) throw UsageError(unknownName("topic", topic, known));
   };
@@ -108,14 +100,14 @@ bool Playlist::hasTopic(const std::string& recorded_name) const {
                      [&](const auto& entry) { return reader_.channels().at(entry.first).topic == recorded_name; });
 }
 
-std::uint64_t Playlist::duration_ns() const {
-  return std::max(reader_.statistics().end_time_ns, start_ns()) - start_ns();
+std::uint64_t Playlist::duration() const {
+  return std::max(reader_.statistics().end_time_ns, startTime()) - startTime();
 }
 
-std::uint64_t Playlist::from_ns() const { return std::min(filter_.start_time_ns - start_ns(), duration_ns()); }
+std::uint64_t Playlist::firstPosition() const { return std::min(filter_.start_time_ns - startTime(), duration()); }
 
-std::uint64_t Playlist::to_ns() const {
-  return std::min(std::max(filter_.end_time_ns, start_ns()) - start_ns(), duration_ns());
+std::uint64_t Playlist::lastPosition() const {
+  return std::min(std::max(filter_.end_time_ns, startTime()) - startTime(), duration());
 }
 
 }  // namespace baton

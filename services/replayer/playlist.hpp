@@ -34,12 +34,12 @@ class Playlist {
   /// Whether one of them stands in for a writer of this topic, as it was recorded.
   [[nodiscard]] bool hasTopic(const std::string& recorded_name) const;
   [[nodiscard]] std::uint64_t total() const { return total_; }  // messages from the first to the last time
-  /// Log times of the recording's first and last message; positions count from the first.
-  [[nodiscard]] std::uint64_t start_ns() const { return reader_.statistics().start_time_ns; }
-  [[nodiscard]] std::uint64_t duration_ns() const;
-  /// The part of it that is played, as positions.
-  [[nodiscard]] std::uint64_t from_ns() const;
-  [[nodiscard]] std::uint64_t to_ns() const;
+  /// Log time of the recording's first message [ns], and from there to its last one; positions count from the first.
+  [[nodiscard]] std::uint64_t startTime() const { return reader_.statistics().start_time_ns; }
+  [[nodiscard]] std::uint64_t duration() const;
+  /// The part of it that is played, as positions [ns].
+  [[nodiscard]] std::uint64_t firstPosition() const;
+  [[nodiscard]] std::uint64_t lastPosition() const;
   /// What of the recording cannot be replayed, and why. More may be found on the way.
   [[nodiscard]] const std::vector<std::string>& problems() const { return problems_; }
 

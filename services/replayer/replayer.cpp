@@ -180,7 +180,7 @@ void Replayer::finish() {
   result_.passes = playback_.pass();
   result_.writers = outlet_.writers();
   result_.topics = outlet_.topics();
-  result_.recorded_s = static_cast<double>(playback_.played_ns()) * 1e-9;
+  result_.recorded_s = static_cast<double>(playback_.playedTime()) * 1e-9;
   result_.problems = playlist_.problems();
   result_.problems.insert(result_.problems.end(), outlet_.problems().begin(), outlet_.problems().end());
   const double max_late_us = static_cast<double>(result_.lateness_ns.max()) * 1e-3;

@@ -35,8 +35,8 @@ std::string Replayer::refusalOf(const msg::ReplayRequest& request) const {
       }
       return "";
     case msg::REPLAY_SEEK: {
-      const std::int64_t from_ns = static_cast<std::int64_t>(playlist_.from_ns());
-      const std::int64_t to_ns = static_cast<std::int64_t>(playlist_.to_ns());
+      const std::int64_t from_ns = static_cast<std::int64_t>(playlist_.firstPosition());
+      const std::int64_t to_ns = static_cast<std::int64_t>(playlist_.lastPosition());
       if (request.position_ns() >= from_ns && request.position_ns() <= to_ns) return "";
       return fmt::format("expected {:.9g} to {:.9g} s, found {:.9g}", static_cast<double>(from_ns) * 1e-9,
                          static_cast<double>(to_ns) * 1e-9, static_cast<double>(request.position_ns()) * 1e-9);
@@ -71,7 +71,7 @@ void Replayer::obey(const msg::ReplayRequest& request) {
 }
 
 void Replayer::seek(std::uint64_t position_ns) {
-  const std::uint64_t log_time_ns = playlist_.start_ns() + position_ns;
+  const std::uint64_t log_time_ns = playlist_.startTime() + position_ns;
   playlist_.seek(log_time_ns);
   fetch();
   playback_.seek(log_time_ns, steadyNow());
@@ -106,7 +106,8 @@ void Replayer::obey(Key key) {
   const double rate = playback_.rate();
   const auto jumpTo = [&](std::uint64_t position_ns) {
     request.action(msg::REPLAY_SEEK);
-    request.position_ns(static_cast<std::int64_t>(std::clamp(position_ns, playlist_.from_ns(), playlist_.to_ns())));
+    request.position_ns(
+        static_cast<std::int64_t>(std::clamp(position_ns, playlist_.firstPosition(), playlist_.lastPosition())));
   };
   switch (key) {
     case Key::kSpace: request.action(playback_.isPlaying() ? msg::REPLAY_PAUSE : msg::REPLAY_RESUME); break;
@@ -141,7 +142,7 @@ msg::ReplayState Replayer::state() const {
 
 std::uint64_t Replayer::position() const {
   const std::uint64_t log_time_ns = playback_.position(steadyNow());
-  return log_time_ns > playlist_.start_ns() ? log_time_ns - playlist_.start_ns() : 0;
+  return log_time_ns > playlist_.startTime() ? log_time_ns - playlist_.startTime() : 0;
 }
 
 void Replayer::report() {
@@ -155,7 +156,7 @@ void Replayer::report() {
   status.passes(playback_.passes());
   status.rate(playback_.rate());
   status.position_ns(static_cast<std::int64_t>(position()));
-  status.duration_ns(static_cast<std::int64_t>(playlist_.duration_ns()));
+  status.duration_ns(static_cast<std::int64_t>(playlist_.duration()));
   status.lateness_p50_us(lateness_us(0.5));
   status.lateness_p99_us(lateness_us(0.99));
   status.lateness_max_us(lateness_us(1.0));
@@ -170,7 +171,7 @@ void Replayer::showProgress(msg::ReplayState state) {
   if (!progress_ || state == msg::REPLAY_FINISHED) return;
   if (!terminal_->hasKeys() && (phase_ != Phase::kPlaying || steadyNow() - begin_ns_ < kQuietStart_ns)) return;
   const double now_s = static_cast<double>(position()) * 1e-9;
-  const double end_s = static_cast<double>(playlist_.duration_ns()) * 1e-9;
+  const double end_s = static_cast<double>(playlist_.duration()) * 1e-9;
   std::string text = fmt::format("{} {:.1f} of {:.1f} s, {}", progressBar(end_s > 0.0 ? now_s / end_s : 1.0), now_s,
                                  end_s, playback_.rate() > 0.0 ? fmt::format("x {:g}", playback_.rate()) : "max");
   if (playback_.passes() != 1) text += fmt::format(", pass {}", playback_.pass());

@@ -6,6 +6,8 @@
 #include <limits>
 #include <ostream>
 
+#include "bench/statistics.hpp"
+
 namespace baton::bench {
 namespace {
 
@@ -51,10 +53,7 @@ void Table::ReportRuns(const std::vector<Run>& runs) {
 double Table::median(const std::string& arm, const std::string& quantity, const std::string& who) const {
   const auto found = times_ns_.find(arm + "/" + quantity + "/" + who);
   if (found == times_ns_.end()) return std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> times = found->second;
-  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-  std::nth_element(times.begin(), middle, times.end());
-  return *middle;
+  return bench::median(found->second);
 }
 
 std::vector<Table::Arm> Table::arms() const {

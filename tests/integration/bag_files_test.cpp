@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 class BagFiles : public testing::Test {
  protected:
   [[nodiscard]] std::string record(const std::string& name, const std::string& scenario = shortContact()) const {
-    const std::string file = (bench.folder() / name).string();
+    std::string file = (bench.folder() / name).string();
     const Finished run = bench.baton({"run", bench.write(name + ".yaml", scenario), "--out", file});
     EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
     return file;

@@ -28,7 +28,7 @@ nlohmann::json readOfficially(const Bench& bench, const std::string& file) {
   const Finished reader = node(bench, "read_mcap.mjs", file);
   EXPECT_EQ(reader.exit_code, 0) << file << "\n" << reader.out << reader.err;
   if (reader.exit_code != 0) return {};
-  const nlohmann::json summary = nlohmann::json::parse(reader.out);
+  nlohmann::json summary = nlohmann::json::parse(reader.out);
   EXPECT_EQ(summary.at("decoded"), summary.at("messages")) << file;
   return summary;
 }
@@ -67,7 +67,9 @@ TEST(Interop, FilesOfTheOfficialWriterAreRead) {
   ASSERT_EQ(writer.exit_code, 0) << writer.out << writer.err;
   const nlohmann::json expected = nlohmann::json::parse(std::ifstream(bench.folder() / "expected.json"));
   ASSERT_EQ(expected.size(), 7U) << "none, lz4, zstd, without chunks, without summary, unknown records, overlapping";
-  for (const auto& [name, contents] : expected.items()) {
+  for (const auto& item : expected.items()) {
+    const std::string& name = item.key();
+    const nlohmann::json& contents = item.value();
     SCOPED_TRACE(name);
     const mcap::Reader reader(bench.folder() / name);
     EXPECT_TRUE(reader.info().is_complete) << reader.info().problem;

@@ -39,7 +39,7 @@ mcap::Bytes payloadOf(std::uint32_t number) {
 
 /// 0, 1, 2, ... on the topic "numbers", `spacing_ns` apart; behind every tenth one message more on "tens".
 std::string writeNumbers(const Bench& bench, std::uint32_t count, std::uint64_t spacing_ns = kMs) {
-  const std::string file = (bench.folder() / "numbers.mcap").string();
+  std::string file = (bench.folder() / "numbers.mcap").string();
   mcap::WriterOptions options;
   options.chunk_bytes = 4096;  // a seek has many to choose from
   mcap::Writer writer(file, options);
@@ -281,6 +281,7 @@ class OnTerminal {
     const std::string program = (programFolder() / "baton-replayer").string();
     arguments.insert(arguments.begin(), program);
     std::vector<char*> argv;
+    argv.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
     const std::string home = bench.folder().string();

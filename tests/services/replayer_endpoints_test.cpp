@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <limits>
+
 #include "base/error.hpp"
 
 namespace baton {
@@ -52,6 +55,24 @@ TEST(ReplayEndpoint, TakesWhatReadersMayDemandFromTheRecording) {
   channel.metadata["qos"] = "durability: volatile\ndeadline_ns: soon\nlease_ns: -1\n";
   EXPECT_EQ(replayEndpoint(channel, nullptr, {}).deadline_ns, 0) << "what is no number promises nothing";
   EXPECT_EQ(replayEndpoint(channel, nullptr, {}).liveliness, dds::Liveliness{});
+}
+
+TEST(ReplayEndpoint, BelievesNoNumberBeyondItsRange) {
+  mcap::Channel channel = recordedChannel("volatile");
+  const auto withNumber = [&](const std::string& text) {
+    channel.metadata["qos"] = "deadline_ns: " + text + "\nlease_ns: " + text + "\nownership_strength: " + text + "\n";
+    return replayEndpoint(channel, nullptr, {});
+  };
+  const dds::EndpointOptions beyond = withNumber("99999999999999999999");
+  EXPECT_EQ(beyond.deadline_ns, std::numeric_limits<std::int64_t>::max());
+  EXPECT_EQ(beyond.liveliness.lease_ns, std::numeric_limits<std::int64_t>::max());
+  EXPECT_EQ(beyond.ownership_strength, std::numeric_limits<std::uint32_t>::max());
+  for (const char* text : {"", "-1", "-99999999999999999999", "20ms", "0x20", " 20", "1e9"}) {
+    const dds::EndpointOptions none = withNumber(text);
+    EXPECT_EQ(none.deadline_ns, 0) << text;
+    EXPECT_EQ(none.liveliness.lease_ns, 0) << text;
+    EXPECT_EQ(none.ownership_strength, 0U) << text;
+  }
 }
 
 TEST(ReplayEndpoint, ReadsTheTruthValuesThatEprosimasRecorderWrites) {

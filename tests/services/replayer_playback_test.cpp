@@ -184,7 +184,7 @@ TEST(Playback, CountsTheLogTimeThatWasPlayedAndNoneThatWasSkipped) {
   playback.begin(at(0), kNow);
   playback.sent("a", at(0), kNow);
   playback.sent("a", at(1), kNow);
-  EXPECT_EQ(playback.played_ns(), static_cast<std::uint64_t>(13 * kMs));
+  EXPECT_EQ(playback.playedTime(), static_cast<std::uint64_t>(13 * kMs));
 }
 
 }  // namespace

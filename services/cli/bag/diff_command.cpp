@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "bag/recording_diff.hpp"
 #include "bag/subcommands.hpp"
@@ -28,12 +27,6 @@ std::string textOf(const FirstDifference& first) {
   return textOf(first.at) + (what.field.empty() ? "" : ", " + what.field) + ": " + what.a + " | " + what.b;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 void printText(const DiffRequest& request, const RecordingDiff& diff) {
   std::size_t topic_width = 5, service_width = 7;
   for (const auto& [key, stream] : diff.streams) {
@@ -45,7 +38,7 @@ void printText(const DiffRequest& request, const RecordingDiff& diff) {
   if (first) {
     fmt::print("first       {}, {}\n", nameOf(*first), textOf(*diff.streams.at(*first).first));
   }
-  if (!diff.left_out.empty()) fmt::print("left out    {}\n", joined(diff.left_out));
+  if (!diff.left_out.empty()) fmt::print("left out    {}\n", fmt::join(diff.left_out, ", "));
   fmt::print("\n{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  first difference, A | B\n", "topic", topic_width, "service",
              service_width, "compared", "different", "only in A", "only in B");
   for (const auto& [key, stream] : diff.streams) {

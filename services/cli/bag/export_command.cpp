@@ -16,6 +16,7 @@
 #include "bag/selection.hpp"
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
+#include "mcap/lookup.hpp"
 #include "schema/error.hpp"
 
 namespace baton {
@@ -150,7 +151,7 @@ class Export {
     } else {
       cells_ = {hexOf(message.data)};
     }
-    std::vector<std::string> row{serviceOf(*message.channel), valueOf(message.channel->metadata, "writer"),
+    std::vector<std::string> row{serviceOf(*message.channel), mcap::valueOf(message.channel->metadata, "writer"),
                                  std::to_string(message.sequence), std::to_string(message.log_time_ns),
                                  std::to_string(message.publish_time_ns)};
     row.insert(row.end(), cells_.begin(), cells_.end());

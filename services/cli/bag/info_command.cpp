@@ -13,14 +13,14 @@
 #include <utility>
 #include <vector>
 
-#include "bag/recorded_types.hpp"
 #include "bag/verdict.hpp"
 #include "base/error.hpp"
-#include "mcap/reader.hpp"
+#include "mcap/lookup.hpp"
 #include "runtime/json.hpp"
 
 namespace baton {
 namespace {
+using mcap::valueOf;
 
 /// One topic and type, all its writers together.
 struct TopicSummary {
@@ -130,12 +130,6 @@ BagSummary summarize(const std::string& file) {
   return bag;
 }
 
-std::string joined(const std::set<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 void printTopics(const BagSummary& bag) {
   std::size_t name_width = 5, type_width = 4;
   for (const auto& [key, topic] : bag.topics) {
@@ -146,7 +140,7 @@ void printTopics(const BagSummary& bag) {
              "rate [Hz]", "gaps");
   for (const auto& [key, topic] : bag.topics) {
     fmt::print("{:<{}}  {:<{}}  {:>9}  {:>9.1f}  {:>6}  {}\n", key.first, name_width, key.second, type_width,
-               topic.messages, topic.rate(), topic.gaps, joined(topic.writers));
+               topic.messages, topic.rate(), topic.gaps, fmt::join(topic.writers, ", "));
   }
 }
 

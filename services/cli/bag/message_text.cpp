@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bag/recorded_types.hpp"
+#include "mcap/lookup.hpp"
 #include "schema/error.hpp"
 
 namespace baton {
@@ -115,7 +116,7 @@ std::string appendJsonLine(std::string& out, const mcap::MessageView& message, c
   out += '{';
   appendMember(out, "topic", channel.topic);
   appendMember(out, "service", serviceOf(channel));
-  appendMember(out, "writer", valueOf(channel.metadata, "writer"));
+  appendMember(out, "writer", mcap::valueOf(channel.metadata, "writer"));
   out += "\"sequence\":" + std::to_string(message.sequence) +
          ",\"log_time_ns\":" + std::to_string(message.log_time_ns) +
          ",\"publish_time_ns\":" + std::to_string(message.publish_time_ns) + ",";

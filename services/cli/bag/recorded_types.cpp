@@ -3,21 +3,17 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "mcap/lookup.hpp"
 #include "schema/error.hpp"
 #include "schema/idl_parser.hpp"
 
 namespace baton {
 
-std::string valueOf(const mcap::StringMap& map, const std::string& key) {
-  const auto found = map.find(key);
-  return found == map.end() ? "" : found->second;
-}
-
 std::string typeNameOf(const mcap::Channel& channel, const mcap::Schema* schema) {
-  return schema != nullptr ? schema->name : valueOf(channel.metadata, "type");
+  return schema != nullptr ? schema->name : mcap::valueOf(channel.metadata, "type");
 }
 
-std::string serviceOf(const mcap::Channel& channel) { return valueOf(channel.metadata, "service"); }
+std::string serviceOf(const mcap::Channel& channel) { return mcap::valueOf(channel.metadata, "service"); }
 
 const schema::Type* RecordedTypes::typeOf(const mcap::Channel& channel, const mcap::Schema* schema) {
   const auto [known, is_new] = types_.try_emplace(channel.id, nullptr);
@@ -30,21 +26,26 @@ const schema::Type* RecordedTypes::typeOf(const mcap::Channel& channel, const mc
   return known->second;
 }
 
+const RecordedTypes::Parsed& RecordedTypes::parsed(const mcap::Schema& schema) {
+  const auto [known, is_new] = parsed_.try_emplace(schema.id);
+  if (!is_new) return known->second;
+  try {
+    const std::string_view text(reinterpret_cast<const char*>(schema.data.data()), schema.data.size());
+    known->second.types = schema::parseIdl(text);
+  } catch (const schema::IdlError& error) {
+    known->second.problem = "the text of schema " + schema.name + ", " + error.what();
+  }
+  return known->second;
+}
+
 const schema::Type* RecordedTypes::read(const mcap::Channel& channel, const mcap::Schema& schema) {
   if (channel.message_encoding != "cdr" || schema.encoding != "omgidl") {
     throw UsageError("expected messages in cdr with a schema in omgidl, found " + channel.message_encoding + " with " +
                      schema.encoding);
   }
-  auto set = sets_.find(schema.id);
-  if (set == sets_.end()) {
-    try {
-      const std::string_view text(reinterpret_cast<const char*>(schema.data.data()), schema.data.size());
-      set = sets_.emplace(schema.id, schema::parseIdl(text)).first;
-    } catch (const schema::IdlError& error) {
-      throw UsageError("the text of schema " + schema.name + ", " + error.what());
-    }
-  }
-  const schema::Type* type = set->second.find(schema.name);
+  const Parsed& text = parsed(schema);
+  if (!text.problem.empty()) throw UsageError(text.problem);
+  const schema::Type* type = text.types.find(schema.name);
   if (type == nullptr) throw UsageError("expected the type " + schema.name + " in its schema's text, found it nowhere");
   return type;
 }

@@ -10,9 +10,6 @@
 
 namespace baton {
 
-/// Empty when the map has no such key.
-[[nodiscard]] std::string valueOf(const mcap::StringMap& map, const std::string& key);
-
 /// The message's type as the channel's metadata or the schema names it; empty when neither does.
 [[nodiscard]] std::string typeNameOf(const mcap::Channel& channel, const mcap::Schema* schema);
 [[nodiscard]] inline std::string typeNameOf(const mcap::MessageView& message) {
@@ -34,10 +31,16 @@ class RecordedTypes {
   }
 
  private:
+  /// What has become of a schema's text, which is read once however many channels have it.
+  struct Parsed {
+    schema::TypeSet types;
+    std::string problem;  // why there are no types
+  };
+  [[nodiscard]] const Parsed& parsed(const mcap::Schema& schema);
   [[nodiscard]] const schema::Type* read(const mcap::Channel& channel, const mcap::Schema& schema);
 
   std::function<void(const std::string&)> complain_;
-  std::map<mcap::SchemaId, schema::TypeSet> sets_;
+  std::map<mcap::SchemaId, Parsed> parsed_;
   std::map<mcap::ChannelId, const schema::Type*> types_;
 };
 

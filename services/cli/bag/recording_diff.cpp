@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "control/nearest_name.hpp"
 #include "dds/topics.hpp"
+#include "mcap/lookup.hpp"
 
 namespace baton {
 namespace {
@@ -94,7 +95,7 @@ class Differ {
   void choose(const DiffRequest& request) {
     std::set<std::string> all;
     for (const Side& side : sides_) {
-      for (const std::string& topic : topicNames(side.reader)) all.insert(topic);
+      for (const std::string& topic : mcap::topicNames(side.reader)) all.insert(topic);
     }
     const std::vector<std::string> names(all.begin(), all.end());
     for (const std::string& topic : names) rules_.meetTopic(topic);

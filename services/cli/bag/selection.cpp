@@ -3,19 +3,15 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <set>
 
 #include "control/nearest_name.hpp"
+#include "mcap/lookup.hpp"
 #include "runtime/command_line.hpp"
 
 namespace baton {
 namespace {
 
 constexpr std::uint64_t kShowEvery = 4096;
-
-std::uint64_t logTimeAt(std::uint64_t start_ns, double seconds) {
-  return start_ns + static_cast<std::uint64_t>(std::min(seconds * 1e9, 9e18));
-}
 
 }  // namespace
 
@@ -30,12 +26,6 @@ void addTimeSelection(CLI::App& command, Selection& selection) {
   command.add_option("--to", selection.to_s, "end here, likewise")->check(notNegative());
 }
 
-std::vector<std::string> topicNames(const mcap::Reader& reader) {
-  std::set<std::string> names;
-  for (const auto& [id, channel] : reader.channels()) names.insert(channel.topic);
-  return {names.begin(), names.end()};
-}
-
 SelectedMessages::SelectedMessages(const Selection& selection)
     : file_(selection.file),
       reader_(selection.file, {.on_damage = [this](const mcap::Damage& damage) {
@@ -44,14 +34,13 @@ SelectedMessages::SelectedMessages(const Selection& selection)
                          " cannot be read and are left out: " + damage.reason);
               }}) {
   if (!reader_.info().is_complete) complain("it was cut: " + reader_.info().problem);
-  const std::vector<std::string> known = topicNames(reader_);
+  const std::vector<std::string> known = mcap::topicNames(reader_);
   for (const std::string& topic : selection.topics) {
     if (!std::ranges::binary_search(known, topic)) throw UsageError(unknownName("topic", topic, known));
   }
   filter_.topics = selection.topics;
-  const std::uint64_t start_ns = reader_.statistics().start_time_ns;
-  if (selection.from_s) filter_.start_time_ns = logTimeAt(start_ns, *selection.from_s);
-  if (selection.to_s) filter_.end_time_ns = logTimeAt(start_ns, *selection.to_s);
+  if (selection.from_s) filter_.start_time_ns = mcap::logTimeAt(reader_, *selection.from_s);
+  if (selection.to_s) filter_.end_time_ns = mcap::logTimeAt(reader_, *selection.to_s);
   if (filter_.end_time_ns < filter_.start_time_ns) throw UsageError("--to: expected a time that is not before --from");
 }
 

@@ -53,7 +53,4 @@ class SelectedMessages {
   mcap::MessageFilter filter_;
 };
 
-/// All topics of a recording, sorted.
-[[nodiscard]] std::vector<std::string> topicNames(const mcap::Reader& reader);
-
 }  // namespace baton

@@ -13,9 +13,7 @@ namespace {
 
 /// Joint by joint.
 std::string joined(const Eigen::VectorXd& values) {
-  std::string text;
-  for (const double value : values) text += fmt::format("{}{:.3g}", text.empty() ? "" : ", ", value);
-  return text;
+  return fmt::format("{:.3g}", fmt::join(values.begin(), values.end(), ", "));
 }
 
 std::string details(const PairHandover& one, const PairTable& table) {

@@ -1,6 +1,6 @@
 #include "counterfactual.hpp"
 
-#include <unistd.h>
+#include <stdlib.h>
 
 #include <algorithm>
 #include <iterator>
@@ -56,18 +56,36 @@ Candidate newcomer(const mcap::Reader& reader, const fs::path& file, const Count
   return candidate;
 }
 
+/// A folder that nobody else can foresee or write to, deleted with everything in it.
+class Scratch {
+ public:
+  Scratch() {
+    std::string pattern = (fs::temp_directory_path() / "baton-whatif-XXXXXX").string();
+    if (::mkdtemp(pattern.data()) == nullptr) {
+      throw UnavailableError("cannot make a folder like " + pattern + ": expected space and the right to write there");
+    }
+    folder_ = pattern;
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+  [[nodiscard]] fs::path file(const std::string& name) const { return folder_ / name; }
+
+ private:
+  fs::path folder_;
+};
+
 /// What the branch's checkpoint knows of a controller; nothing when the run is no branch or knows nothing.
 std::optional<std::vector<std::uint8_t>> stateAtBranch(const RecordedRun& run, const std::string& controller) {
   if (!run.checkpoint) return std::nullopt;
-  struct Scratch {
-    fs::path file = fs::temp_directory_path() / ("baton-whatif-" + std::to_string(getpid()) + ".mcap");
-    ~Scratch() {
-      std::error_code ignored;
-      fs::remove(file, ignored);
-    }
-  } const scratch;
-  writeText(scratch.file, *run.checkpoint);
-  const CheckpointSet set = readCheckpoint(scratch.file);
+  const Scratch scratch;
+  const fs::path file = scratch.file("checkpoint.mcap");
+  writeText(file, *run.checkpoint);
+  const CheckpointSet set = readCheckpoint(file);
   const auto found = set.states.find(controller);
   return found == set.states.end() ? std::nullopt : std::optional(found->second);
 }

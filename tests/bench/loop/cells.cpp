@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "base/error.hpp"
+#include "bench/statistics.hpp"
 #include "dds/typed.hpp"
 #include "runtime/service_options.hpp"
 #include "scenario.hpp"
@@ -78,12 +79,6 @@ class Starter {
   dds::Reader<msg::SimStatus> statuses_;
   dds::Writer<msg::SimRequest> requests_;
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 

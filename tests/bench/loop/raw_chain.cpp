@@ -7,10 +7,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <iostream>
 #include <nlohmann/json.hpp>
+
+#include "bench/statistics.hpp"
 
 namespace raw {
 namespace {
@@ -34,9 +35,8 @@ struct Process {
 nlohmann::ordered_json resultOf(const Chain& chain, std::vector<std::int64_t> periods_ns) {
   std::sort(periods_ns.begin(), periods_ns.end());
   const auto us = [](double ns) { return ns * 1e-3; };
-  const auto quantile = [&](double p) {  // nearest rank
-    const double rank = std::ceil(p * static_cast<double>(periods_ns.size()));
-    return us(static_cast<double>(periods_ns[static_cast<std::size_t>(std::max(rank, 1.0)) - 1]));
+  const auto quantile_us = [&](double part) {
+    return us(static_cast<double>(baton::bench::quantile(periods_ns, part)));
   };
   double sum_ns = 0.0;
   for (const std::int64_t period_ns : periods_ns) sum_ns += static_cast<double>(period_ns);
@@ -46,10 +46,10 @@ nlohmann::ordered_json resultOf(const Chain& chain, std::vector<std::int64_t> pe
           {"period_us",
            {{"count", periods_ns.size()},
             {"mean", us(sum_ns / static_cast<double>(periods_ns.size()))},
-            {"p50", quantile(0.5)},
-            {"p99", quantile(0.99)},
-            {"p999", quantile(0.999)},
-            {"max", quantile(1.0)}}}};
+            {"p50", quantile_us(0.5)},
+            {"p99", quantile_us(0.99)},
+            {"p999", quantile_us(0.999)},
+            {"max", quantile_us(1.0)}}}};
 }
 
 /// The life of a role, in its own process, until the launcher closes the other end of the socket.

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <optional>
 
+#include "bench/statistics.hpp"
+
 namespace baton::bench {
 namespace {
 using Json = nlohmann::ordered_json;
@@ -40,13 +42,6 @@ const std::vector<Comparison>& comparisons() {
 constexpr const char* kEightProcesses = "force-3-standby-recorded";
 constexpr double kStart_s = 1.5;
 constexpr double kResident_MB = 25.0;
-
-double median(std::vector<double> values) {
-  std::erase_if(values, [](double value) { return std::isnan(value); });
-  if (values.empty()) return kUnknown;
-  std::sort(values.begin(), values.end());
-  return (values[values.size() / 2] + values[(values.size() - 1) / 2]) / 2.0;
-}
 
 /// NaN cannot be written as JSON.
 Json orNull(double value) { return std::isnan(value) ? Json(nullptr) : Json(value); }

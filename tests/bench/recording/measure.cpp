@@ -25,11 +25,6 @@ Scratch::~Scratch() {
   std::filesystem::remove_all(folder_, ignored);
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values.at(values.size() / 2);
-}
-
 Ended runProgram(const std::string& name, const std::vector<std::string>& arguments) {
   std::vector<std::string> all{siblingProgram(name).string()};
   all.insert(all.end(), arguments.begin(), arguments.end());

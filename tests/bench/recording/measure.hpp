@@ -58,8 +58,6 @@ class Stopwatch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-[[nodiscard]] double median(std::vector<double> values);
-
 /// A program that stands beside this one, run to its end with its output thrown away.
 struct Ended {
   int exit_code = 0;

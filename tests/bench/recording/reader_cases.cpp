@@ -4,6 +4,7 @@
 #include <random>
 
 #include "base/error.hpp"
+#include "bench/statistics.hpp"
 #include "mcap/reader.hpp"
 #include "measure.hpp"
 #include "support/recorded_files.hpp"

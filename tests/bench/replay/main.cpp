@@ -1,11 +1,9 @@
 // `baton bench replay`: how late the messages of a replay at 1 kHz go out, beside a loop that only sleeps, in one
 // interleaved run; and how long a seek in a large recording takes.
-#include <unistd.h>
-
-#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
+#include "bench/statistics.hpp"
 #include "measure.hpp"
 #include "recording.hpp"
 #include "runtime/command_line.hpp"
@@ -27,12 +25,6 @@ struct Plan {
   int seek_megabytes = 1000;
   bool as_json = false;
 };
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 /// The rounds of one quantity that is measured, a percentile each.
 struct Rounds {

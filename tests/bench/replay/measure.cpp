@@ -69,8 +69,8 @@ Histogram seekAround(const std::string& file, int times) {
   Histogram duration_ns;
   std::uint64_t random = 1;
   for (int i = 0; i < times; ++i) {
-    const std::uint64_t position_ns = splitmix(random += kSplitmixStep) % (playlist.duration_ns() + 1);
-    const std::uint64_t log_time_ns = playlist.start_ns() + position_ns;
+    const std::uint64_t position_ns = splitmix(random += kSplitmixStep) % (playlist.duration() + 1);
+    const std::uint64_t log_time_ns = playlist.startTime() + position_ns;
     const std::int64_t begin_ns = steadyNow();
     playlist.seek(log_time_ns);
     mcap::MessageView message;

@@ -3,9 +3,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iomanip>
 #include <ostream>
+
+#include "bench/statistics.hpp"
 
 namespace baton::bench {
 namespace {
@@ -14,17 +15,10 @@ using Json = nlohmann::ordered_json;
 constexpr double kEffect_ms = 5.0;          // in real time at 1 kHz, of 99 in 100
 constexpr std::uint64_t kBesideMargin = 2;  // steps, in lockstep, of all
 
-/// The value that a part of all does not exceed.
 template <class T>
-T quantile(std::vector<T> values, double part) {
-  std::sort(values.begin(), values.end());
-  const auto rank = static_cast<std::size_t>(std::ceil(part * static_cast<double>(values.size())));
-  return values[std::max<std::size_t>(rank, 1) - 1];
-}
-
-template <class T>
-Json spread(const std::vector<T>& values) {
+Json spread(std::vector<T> values) {
   if (values.empty()) return nullptr;
+  std::sort(values.begin(), values.end());
   return {{"p50", quantile(values, 0.5)}, {"p99", quantile(values, 0.99)}, {"max", quantile(values, 1.0)}};
 }
 

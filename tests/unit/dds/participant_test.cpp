@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -175,6 +176,28 @@ TEST(ParticipantTest, TheTextOfAWritersQosSaysWhatItPromises) {
                 partition);
 }
 
+TEST(ParticipantTest, WhatIsLongerThanDdsCanSayIsForEver) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000, kLongest_s = std::numeric_limits<std::int32_t>::max() - 1;
+  Signal signal;
+  Watch watch(signal, "cell");
+  Participant recorder(memberOptions("recorder", "cell")), plant(memberOptions("plant", "cell"));
+  watch.listenTo(recorder);
+  const auto qosOf = [&](std::int64_t duration_ns) {
+    const RawWriter writer(plant, {.topic = "topic",
+                                   .type = "baton::test::A",
+                                   .deadline_ns = duration_ns,
+                                   .liveliness = {.lease_ns = duration_ns}});
+    EXPECT_TRUE(signal.waitUntil([&] { return watch.found().contains(writer.guid()); }));
+    return watch.found().at(writer.guid()).qos_text;
+  };
+  const std::string longest_ns = std::to_string(kLongest_s * kSecond_ns);
+  EXPECT_NE(qosOf(kLongest_s * kSecond_ns).find("deadline_ns: " + longest_ns + "\nlease_ns: " + longest_ns + "\n"),
+            std::string::npos);
+  for (const std::int64_t duration_ns : {(kLongest_s + 1) * kSecond_ns, std::numeric_limits<std::int64_t>::max()}) {
+    EXPECT_EQ(qosOf(duration_ns).find("_ns"), std::string::npos);
+  }
+}
+
 TEST(ParticipantTest, WritersAreHeardInOtherPartitionsAsWell) {
   Signal signal;
   ParticipantOptions options = memberOptions("plant", "cell");
@@ -189,6 +212,7 @@ TEST(ParticipantTest, WritersAreHeardInOtherPartitionsAsWell) {
   ParticipantOptions nowhere = memberOptions("nowhere", "");
   nowhere.partition.clear();
   members.push_back(std::make_unique<Participant>(nowhere));
+  readers.reserve(members.size());
   for (const auto& member : members) {
     readers.push_back(std::make_unique<RawReader>(
         *member, EndpointOptions{.topic = "topic", .type = "baton::test::A", .profile = Profile::kEvent},

@@ -1,0 +1,27 @@
+#include "mcap/lookup.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+namespace baton::mcap {
+
+std::string valueOf(const StringMap& map, const std::string& key) {
+  const auto found = map.find(key);
+  return found == map.end() ? "" : found->second;
+}
+
+std::vector<std::string> topicNames(const Reader& reader) {
+  std::set<std::string> names;
+  for (const auto& [id, channel] : reader.channels()) names.insert(channel.topic);
+  return {names.begin(), names.end()};
+}
+
+std::uint64_t logTimeAt(const Reader& reader, double seconds) {
+  constexpr double kLongest_ns = 9e18;  // fits into 64 bits
+  const std::uint64_t start_ns = reader.statistics().start_time_ns;
+  const auto since_ns = static_cast<std::uint64_t>(std::min(seconds * 1e9, kLongest_ns));
+  return start_ns + std::min(since_ns, std::numeric_limits<std::uint64_t>::max() - start_ns);
+}
+
+}  // namespace baton::mcap

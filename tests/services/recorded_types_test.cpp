@@ -1,0 +1,56 @@
+/// The types of a recording's messages, as its schemas declare them.
+#include "bag/recorded_types.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace baton {
+namespace {
+
+mcap::Channel channelOf(int id, const std::string& topic) {
+  return {.id = mcap::ChannelId{static_cast<std::uint16_t>(id)}, .topic = topic, .message_encoding = "cdr"};
+}
+
+mcap::Schema schemaOf(std::string_view text) {
+  const auto bytes = std::as_bytes(std::span(text));
+  return {.id = mcap::SchemaId{1}, .name = "S", .encoding = "omgidl", .data = {bytes.begin(), bytes.end()}};
+}
+
+class RecordedTypesTest : public testing::Test {
+ protected:
+  std::vector<std::string> complaints;
+  RecordedTypes types{[this](const std::string& complaint) { complaints.push_back(complaint); }};
+};
+
+TEST_F(RecordedTypesTest, ChannelsOfASchemaShareItsType) {
+  const mcap::Schema schema = schemaOf("struct S { long a; };");
+  const schema::Type* type = types.typeOf(channelOf(1, "a"), &schema);
+  ASSERT_NE(type, nullptr);
+  EXPECT_EQ(types.typeOf(channelOf(2, "b"), &schema), type);
+  EXPECT_TRUE(complaints.empty());
+}
+
+TEST_F(RecordedTypesTest, ASchemaThatCannotBeReadIsReadOnceAndToldOfByTopic) {
+  const mcap::Schema bad = schemaOf("struct S { long a }"), good = schemaOf("struct S { long a; };");
+  EXPECT_EQ(types.typeOf(channelOf(1, "a"), &bad), nullptr);
+  EXPECT_EQ(types.typeOf(channelOf(2, "b"), &good), nullptr) << "the text under this number has been read";
+  EXPECT_EQ(types.typeOf(channelOf(1, "a"), &bad), nullptr);
+  ASSERT_EQ(complaints.size(), 2U);
+  EXPECT_EQ(complaints[0].substr(0, 40), "topic a stays bytes: the text of schema ");
+  EXPECT_EQ(complaints[1], "topic b" + complaints[0].substr(7));
+}
+
+TEST_F(RecordedTypesTest, WithoutASchemaInIdlMessagesStayBytes) {
+  mcap::Schema schema = schemaOf("{}");
+  schema.encoding = "jsonschema";
+  EXPECT_EQ(types.typeOf(channelOf(1, "a"), &schema), nullptr);
+  EXPECT_EQ(complaints.size(), 1U);
+  EXPECT_EQ(types.typeOf(channelOf(2, "b"), nullptr), nullptr);
+  EXPECT_EQ(complaints.size(), 1U) << "of what has no schema nothing is expected";
+}
+
+}  // namespace
+}  // namespace baton
