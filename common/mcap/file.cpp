@@ -23,8 +23,9 @@ auto resumed(Call call) {
 
 std::filesystem::path presentPath(std::filesystem::path path, OutputFile::IfExists if_exists) {
   std::error_code none;
-  const bool is_device = std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none);
-  if (if_exists == OutputFile::IfExists::kReplace && !is_device) path += ".part";
+  const std::filesystem::file_type type = std::filesystem::symlink_status(path, none).type();
+  const bool is_file = type == std::filesystem::file_type::regular || type == std::filesystem::file_type::not_found;
+  if (if_exists == OutputFile::IfExists::kReplace && is_file) path += ".part";
   return path;
 }
 
@@ -65,7 +66,10 @@ int Descriptor::reset() {
 }
 
 OutputFile::OutputFile(std::filesystem::path path, IfExists if_exists)
-    : path_(std::move(path)), present_path_(presentPath(path_, if_exists)), fd_(openOutput(present_path_, if_exists)) {}
+    : path_(std::move(path)),
+      present_path_(presentPath(path_, if_exists)),
+      is_own_(if_exists == IfExists::kRefuse || present_path_ != path_),
+      fd_(openOutput(present_path_, if_exists)) {}
 
 OutputFile::~OutputFile() {
   if (present_path_ != path_) discard();
@@ -74,7 +78,7 @@ OutputFile::~OutputFile() {
 void OutputFile::discard() noexcept {
   if (fd_.get() < 0) return;
   fd_.reset();
-  ::unlink(present_path_.c_str());
+  if (is_own_) ::unlink(present_path_.c_str());
 }
 
 void OutputFile::fail(const std::string& what, int error) {

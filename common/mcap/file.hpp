@@ -30,8 +30,8 @@ class Descriptor {
 /// nobody can know what the file holds, so nothing more is put into it.
 class OutputFile {
  public:
-  /// kReplace: the bytes go to PATH.part, which takes the place of PATH when it is closed, and not before; what is no
-  /// regular file, as /dev/null, is written to as it is.
+  /// kReplace: the bytes go to PATH.part, which takes the place of PATH when it is closed, and not before; a link,
+  /// or a device such as /dev/null, is written to as it is.
   enum class IfExists { kRefuse, kReplace };
 
   /// Creates the file. Throws UnavailableError when it is there already (kRefuse) or cannot be created.
@@ -47,7 +47,7 @@ class OutputFile {
   void sync();
   /// Closes and reports what the system held back until then.
   void close();
-  /// Takes the file away; nothing can be done with it any more.
+  /// Takes the file away, unless it was there before; nothing can be done with it any more.
   void discard() noexcept;
   /// Throws the error of an earlier failure again, or WriteError when the file is closed.
   void requireHealthy() const;
@@ -63,6 +63,7 @@ class OutputFile {
 
   std::filesystem::path path_;
   std::filesystem::path present_path_;  // until it is closed
+  bool is_own_;                         // made here, not a device that was there
   Descriptor fd_;
   std::uint64_t size_ = 0;
   std::uint64_t durable_size_ = 0;

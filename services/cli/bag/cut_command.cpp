@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
 #include "control/nearest_name.hpp"
+#include "mcap/lookup.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
@@ -33,18 +33,13 @@ mcap::MessageFilter filterOf(const CutRequest& request, const mcap::Reader& read
   if (!request.from_s && !request.to_s && request.topics.empty()) {
     throw UsageError("expected what to keep: --from, --to or --topics");
   }
-  std::set<std::string> known;
-  for (const auto& [id, channel] : reader.channels()) known.insert(channel.topic);
+  const std::vector<std::string> known = mcap::topicNames(reader);
   for (const std::string& topic : request.topics) {
-    if (!known.contains(topic)) throw UsageError(unknownName("topic", topic, {known.begin(), known.end()}));
+    if (!std::ranges::binary_search(known, topic)) throw UsageError(unknownName("topic", topic, known));
   }
   mcap::MessageFilter filter{.topics = request.topics, .order = mcap::MessageFilter::Order::kFile};
-  const auto timeOf = [&](double seconds) {
-    constexpr double kLatest_ns = 9e18;  // what a clock can show
-    return reader.statistics().start_time_ns + static_cast<std::uint64_t>(std::min(seconds * 1e9, kLatest_ns));
-  };
-  if (request.from_s) filter.start_time_ns = timeOf(*request.from_s);
-  if (request.to_s) filter.end_time_ns = timeOf(*request.to_s);
+  if (request.from_s) filter.start_time_ns = mcap::logTimeAt(reader, *request.from_s);
+  if (request.to_s) filter.end_time_ns = mcap::logTimeAt(reader, *request.to_s);
   if (filter.end_time_ns < filter.start_time_ns) throw UsageError("--to: expected a time that is not before --from");
   return filter;
 }

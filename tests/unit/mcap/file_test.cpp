@@ -100,6 +100,22 @@ TEST_F(FileTest, WhatIsDiscardedIsGone) {
   EXPECT_THROW(file.write(payload(10, 1)), WriteError);
 }
 
+TEST_F(FileTest, AnOpenFileOrALinkToOneIsWrittenInPlaceAndStays) {
+  saveFile(path, payload(100, 1));
+  const std::filesystem::path link = folder.file("link");
+  std::filesystem::create_symlink(path, link);
+  {
+    OutputFile file(link, OutputFile::IfExists::kReplace);
+    file.write(payload(20, 2));
+    file.discard();
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(loadFile(path), payload(20, 2));
+  OutputFile file("/dev/null", OutputFile::IfExists::kReplace);
+  file.discard();
+  EXPECT_TRUE(std::filesystem::exists("/dev/null"));
+}
+
 TEST_F(FileTest, AFullDiskIsReportedAtOnce) {
   OutputFile file("/dev/full", OutputFile::IfExists::kReplace);
   const std::string message = messageOf([&] { file.write(payload(10, 1)); });
