@@ -83,9 +83,10 @@ struct RecordingConfig {
   std::uint64_t split_steps = 0;                     // likewise, by steps of the run
   std::uint64_t ring_steps = 0;  // kept in memory alone, until they are asked for or the run ends; 0: no ring
   std::uint64_t ring_bytes = 256'000'000;
-  std::uint64_t max_bytes = 0;       // of all parts together; 0: no limit
-  bool drops_oldest = false;         // when they are reached, the oldest part goes; else the recording ends
-  std::uint64_t min_free_bytes = 0;  // below this on the disk, likewise
+  std::uint64_t max_bytes = 0;  // of all parts together; 0: no limit
+  bool drops_oldest = false;    // when they are reached, the oldest part goes; else the recording ends
+  std::uint64_t min_free_bytes =
+      10'000'000;                    // likewise, before less is left on the disk, for logs and the run's result
   std::uint64_t credit_steps = 256;  // lockstep: how far the plant may run past the recorder
   std::uint64_t checkpoint_steps =
       0;                     // every so many steps all parts save their state, for branches; 0: at the end alone

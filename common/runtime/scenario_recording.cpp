@@ -52,7 +52,7 @@ void requireTogether(const YamlMap& map, const RecordingConfig& recording) {
     node->fail("expected ring_s beside it, how many seconds are to be kept");
   }
   if (const auto node = map.find("when_full")) {
-    if (recording.max_bytes == 0 && recording.min_free_bytes == 0) {
+    if (!map.has("max_MB") && !map.has("min_free_MB")) {
       node->fail("expected max_MB or min_free_MB beside it, at which something is full");
     }
     if (recording.drops_oldest && !is_split)
@@ -96,7 +96,7 @@ void readRecordingShape(const YamlMap& map, const Scenario& scenario, RecordingC
   recording.ring_steps = readStepsOr(map, "ring_s", scenario);
   recording.ring_bytes = readMegabytes(map, "ring_MB", kLeast_MB, recording.ring_bytes);
   recording.max_bytes = readMegabytes(map, "max_MB", kLeast_MB, 0);
-  recording.min_free_bytes = readMegabytes(map, "min_free_MB", 0.0, 0);
+  recording.min_free_bytes = readMegabytes(map, "min_free_MB", 0.0, recording.min_free_bytes);
   if (const auto full = map.find("when_full")) {
     recording.drops_oldest = full->oneOf<bool>({{"stop", false}, {"drop_oldest", true}});
   }

@@ -54,7 +54,20 @@ Recording::Recording(std::filesystem::path path, const RecordingConfig& config, 
 
 /// Metadata and attachments first: even a recording that is cut off says what it is of.
 std::unique_ptr<mcap::Writer> Recording::openPart(unsigned index, std::uint64_t from_step) const {
-  auto file = std::make_unique<mcap::Writer>(partOf(path_, index), fileOptions(config_));
+  const std::filesystem::path path = partOf(path_, index);
+  try {
+    return openFile(path, index, from_step);
+  } catch (const mcap::WriteError&) {
+    // There was no room for its beginning, so nothing is in it: it would only be in the way.
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+    throw;
+  }
+}
+
+std::unique_ptr<mcap::Writer> Recording::openFile(const std::filesystem::path& path, unsigned index,
+                                                  std::uint64_t from_step) const {
+  auto file = std::make_unique<mcap::Writer>(path, fileOptions(config_));
   file->addMetadata("baton.run", origin_.run);
   if (isSplit(config_)) {
     file->addMetadata("baton.part", {{"index", std::to_string(index)},

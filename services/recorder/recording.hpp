@@ -100,6 +100,8 @@ class Recording {
   };
 
   [[nodiscard]] std::unique_ptr<mcap::Writer> openPart(unsigned index, std::uint64_t from_step) const;
+  [[nodiscard]] std::unique_ptr<mcap::Writer> openFile(const std::filesystem::path& path, unsigned index,
+                                                       std::uint64_t from_step) const;
   void openChannel(Written& written, const Sample& sample);
   void closeFile();
 

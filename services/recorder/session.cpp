@@ -80,7 +80,6 @@ ExitCode RecordingSession::run() {
 // -------------------------------------------------------------------------------------------------------
 
 void RecordingSession::takeBatch(const SampleQueue::Batch& batch) {
-  if (config_.min_free_bytes > 0) free_bytes_ = freeBytes();
   for (const SampleQueue::Entry& entry : batch.entries) {
     const auto payload = batch.payload(entry);
     Stream& stream = streamOf(entry.topic, entry.writer);

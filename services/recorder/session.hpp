@@ -90,6 +90,7 @@ class RecordingSession {
   std::chrono::steady_clock::time_point moved_{};  // after the run's end
   std::optional<std::uint64_t> progress_at_end_;
   std::uint64_t free_bytes_ = 0;
+  std::uint64_t measured_bytes_ = 0;     // of the recording when the disk was last looked at
   std::uint64_t finished_messages_ = 0;  // of the latest recording, when it is finished
   std::uint64_t finished_bytes_ = 0;
   bool is_incomplete_ = false;  // one of the recordings made

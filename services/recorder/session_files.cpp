@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <utility>
 
 #include "session.hpp"
 
@@ -23,6 +24,8 @@ void RecordingSession::makeRoom() {
     recording_->splitWhenFull(credit_.elapsedSteps(), credit_.stateStep());
     for (;;) {
       Storage storage = recording_->storage();
+      // Others write there as well; between two chunks nothing of ours comes to it.
+      if (std::exchange(measured_bytes_, recording_->bytes()) != recording_->bytes()) free_bytes_ = freeBytes();
       storage.free_bytes = free_bytes_;
       const StorageVerdict verdict = judgeStorage(config_, storage);
       if (verdict == StorageVerdict::kGoOn) return;
@@ -36,21 +39,34 @@ void RecordingSession::makeRoom() {
         return publishStatus();
       }
       recording_->dropOldestPart();
-      if (config_.min_free_bytes > 0) free_bytes_ = freeBytes();
     }
   } catch (const std::exception& error) {
     fail(error.what());
   }
 }
 
+namespace {
+
+/// Counts what a recording has come to, however it ends.
+struct Tally {
+  const Recording& recording;
+  std::uint64_t& messages;
+  std::uint64_t& bytes;
+  ~Tally() {
+    messages = recording.writtenMessages();
+    bytes = recording.bytes();
+  }
+};
+
+}  // namespace
+
 /// Returns what the certificate says.
 std::string RecordingSession::finish(const Ending& ending) {
   // Whatever happens here, it is over.
   const std::unique_ptr<Recording> recording = std::move(recording_);
+  const Tally tally{*recording, finished_messages_, finished_bytes_};
   std::string summary = close(*recording, ending, holes_.between(0, credit_.stateStep()));
   holes_.clear();
-  finished_messages_ = recording->messages();
-  finished_bytes_ = recording->bytes();
   return summary;
 }
 
@@ -76,6 +92,7 @@ std::string RecordingSession::writeRing(const std::string& path, const Ending& e
   const std::uint64_t span = credit_.elapsedSteps() - ring_->firstStep().value_or(credit_.elapsedSteps());
   const std::uint64_t from_step = credit_.stateStep() - std::min(span, credit_.stateStep());
   Recording recording(path, config_, origin_, credit_.elapsedSteps(), from_step);
+  const Tally tally{recording, finished_messages_, finished_bytes_};
   std::vector<const Stream*> streams(streams_.size());
   for (const auto& [key, stream] : streams_) streams[stream.index] = &stream;
   ring_->forEach([&](const Ring::Sample& sample) {
@@ -85,10 +102,7 @@ std::string RecordingSession::writeRing(const std::string& path, const Ending& e
                                               .lost_before = sample.lost_before,
                                               .payload = sample.payload});
   });
-  std::string summary = close(recording, ending, holes_.between(from_step, credit_.stateStep()));
-  finished_messages_ = recording.messages();
-  finished_bytes_ = recording.bytes();
-  return summary;
+  return close(recording, ending, holes_.between(from_step, credit_.stateStep()));
 }
 
 /// Nothing more is written; what comes is taken all the same, so that the run goes on.
@@ -100,6 +114,7 @@ void RecordingSession::fail(const std::string& what) {
   } catch (const std::exception&) {
     // What is in the file up to here stays readable.
   }
+  ring_.reset();
   is_incomplete_ = true;
   control_.failed();
   publishStatus();

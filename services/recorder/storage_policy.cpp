@@ -11,7 +11,8 @@ bool isOverBudget(const RecordingConfig& config, const Storage& storage) {
 }
 
 bool isDiskLow(const RecordingConfig& config, const Storage& storage) {
-  return storage.free_bytes < config.min_free_bytes;
+  return config.min_free_bytes > 0 &&
+         storage.free_bytes < config.min_free_bytes + closingBytes(config, storage.part_bytes);
 }
 
 }  // namespace
@@ -24,7 +25,8 @@ bool isPartFull(const RecordingConfig& config, std::uint64_t part_bytes, std::ui
 std::uint64_t closingBytes(const RecordingConfig& config, std::uint64_t part_bytes) {
   // Measured: chunks hold 1500 messages of some 20 channels; the index of one takes 400 bytes of 60 kB compressed.
   constexpr std::uint64_t kSummary = 100'000, kIndexShare = 50;
-  return config.chunk_bytes + part_bytes / kIndexShare + std::min<std::uint64_t>(kSummary, config.max_bytes / 4);
+  const std::uint64_t summary = config.max_bytes > 0 ? std::min(kSummary, config.max_bytes / 4) : kSummary;
+  return config.chunk_bytes + part_bytes / kIndexShare + summary;
 }
 
 StorageVerdict judgeStorage(const RecordingConfig& config, const Storage& storage) {
@@ -35,8 +37,8 @@ StorageVerdict judgeStorage(const RecordingConfig& config, const Storage& storag
 std::string reachedText(const RecordingConfig& config, const Storage& storage) {
   const auto mega = [](std::uint64_t bytes) { return static_cast<double>(bytes) * 1e-6; };
   if (isDiskLow(config, storage)) {
-    return fmt::format("{:.1f} MB are left on the disk, less than recording.min_free_MB, {:g}",
-                       mega(storage.free_bytes), mega(config.min_free_bytes));
+    return fmt::format("recording.min_free_MB, {:g}, is reached: the disk has {:.1f} MB left",
+                       mega(config.min_free_bytes), mega(storage.free_bytes));
   }
   return fmt::format("recording.max_MB, {:g}, is reached", mega(config.max_bytes));
 }

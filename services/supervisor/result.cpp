@@ -1,8 +1,10 @@
 #include "result.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include "runtime/json.hpp"
 #include "runtime/swap_report.hpp"
@@ -87,9 +89,9 @@ void writeResult(const RunInfo& info, const Scenario& scenario, const RunResult&
   std::ofstream stream(draft);
   stream << toText(json) << '\n';
   stream.close();
-  std::error_code error;
+  std::error_code error(errno, std::generic_category());
   if (stream) std::filesystem::rename(draft, file, error);
-  if (!stream || error) throw UnavailableError("cannot write " + file.string());
+  if (!stream || error) throw UnavailableError("cannot write " + file.string() + ": " + error.message());
 }
 
 }  // namespace baton

@@ -1,4 +1,5 @@
-// The benches of the loop and of the recording: that they measure. What it measures is the machine's business.
+// The benches of the loop, of the recording and of the recorder: that they measure. What it measures is the machine's
+// business.
 #include <gtest/gtest.h>
 
 #include "support/processes.hpp"
@@ -104,6 +105,51 @@ TEST(RecordingBench, MeasuresWriterAndReader) {
   for (const auto& entry : std::filesystem::directory_iterator(bench.folder())) {
     EXPECT_FALSE(entry.is_directory()) << entry.path() << " is left lying about";
   }
+}
+
+TEST(RecorderBench, CountsWhatEachWriterSentAndWhatOfItIsInTheFile) {
+  const Bench bench;
+  const Finished finished = runProgram(programFolder() / "baton-bench-recorder",
+                                       {"--writers", "3", "--rate", "1800", "--up-to", "2400", "--seconds", "0.5",
+                                        "--steps", "300", "--rounds", "2", "--disk", bench.folder().string(), "--json"},
+                                       bench.folder());
+  ASSERT_EQ(finished.exit_code, 0) << finished.err;
+  const nlohmann::json report = nlohmann::json::parse(finished.out);
+  ASSERT_EQ(report.at("rounds").size(), 2U);
+  std::uint64_t sent = 0, lost = 0;  // at the rate that was asked for
+  for (const auto& round : report.at("rounds")) {
+    ASSERT_FALSE(round.at("measured").empty());
+    for (const auto& one : round.at("measured")) {
+      SCOPED_TRACE(one.dump());
+      ASSERT_EQ(one.at("writers").size(), 3U);
+      std::uint64_t difference = 0;
+      for (const auto& writer : one.at("writers")) {
+        EXPECT_EQ(writer.at("sent"), static_cast<std::uint64_t>(one.at("asked_per_s").get<double>() * 0.5 / 3.0));
+        EXPECT_LE(writer.at("recorded"), writer.at("sent"));
+        difference += writer.at("sent").get<std::uint64_t>() - writer.at("recorded").get<std::uint64_t>();
+      }
+      EXPECT_EQ(one.at("lost"), difference);
+      EXPECT_EQ(one.at("complete"), difference == 0) << "the certificate sees what the count sees";
+      EXPECT_GT(one.at("sent_per_s"), 0.0);
+    }
+    const auto& first = round.at("measured").front();
+    EXPECT_EQ(first.at("asked_per_s"), 1800.0);
+    sent += 3 * first.at("writers").front().at("sent").get<std::uint64_t>();
+    lost += first.at("lost").get<std::uint64_t>();
+  }
+  std::map<std::string, double> values;
+  for (const auto& row : report.at("rows")) {
+    SCOPED_TRACE(row.dump());
+    EXPECT_EQ(row.at("target").is_null(), row.at("reached").is_null());
+    values[row.at("name")] = row.at("value");
+  }
+  EXPECT_EQ(sent, 1800U);
+  EXPECT_EQ(values.at("sent at 1800/s, all rounds"), sent);
+  EXPECT_EQ(values.at("recorded at 1800/s, all rounds"), sent - lost);
+  EXPECT_EQ(values.at("lost at 1800/s, all rounds"), lost);
+  for (const char* sync : {"none", "1", "0.1", "chunk"}) EXPECT_GT(values.at(std::string("run, sync ") + sync), 0.0);
+  EXPECT_GT(values.at("run, sync chunk / sync none"), 0.0);
+  EXPECT_NE(finished.err.find("highest rate without a loss"), std::string::npos) << finished.err;  // the table
 }
 
 TEST(RawChain, PassesEveryStepInBothOrders) {

@@ -40,7 +40,8 @@ Payload payloadOf(std::uint64_t seed) {
 class RecordingTest : public testing::Test {
  protected:
   void open(const std::string& recording) {
-    const std::string text = test::shortContact("recording: {compression: none, chunk_kB: 10" + recording + "}\n");
+    const std::string text =
+        test::shortContact("recording: {compression: none, chunk_kB: 10, min_free_MB: 0" + recording + "}\n");
     const std::string robot = readYamlFile((test::deployFolder() / "robots/rpp.yaml").string());
     config_ = parseScenario("test.yaml", text, "rpp.yaml", robot).recording;
     recording_ = std::make_unique<Recording>(file(), config_, origin_, 0, 0);

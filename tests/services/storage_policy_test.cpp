@@ -23,6 +23,7 @@ RecordingConfig withBudget(std::uint64_t max_bytes, bool drops_oldest) {
   RecordingConfig config;
   config.chunk_bytes = 100'000;
   config.max_bytes = max_bytes;
+  config.min_free_bytes = 0;
   config.drops_oldest = drops_oldest;
   return config;
 }
@@ -50,19 +51,23 @@ TEST(Budget, DropsTheOldestPartWhereThatIsWantedAndThereIsOne) {
   EXPECT_EQ(judgeStorage(config, {.part_bytes = 10 * kMB, .closed_parts = 0}), StorageVerdict::kStop);
 }
 
-TEST(LowDisk, EndsTheRecordingOrDropsTheOldest) {
+TEST(LowDisk, EndsTheRecordingOrDropsTheOldestSoEarlyThatSoMuchIsLeftBehindTheFinishedFile) {
   RecordingConfig config;
   config.min_free_bytes = 50 * kMB;
-  EXPECT_EQ(judgeStorage(config, {.part_bytes = kMB, .free_bytes = 50 * kMB}), StorageVerdict::kGoOn);
-  const Storage low{.part_bytes = kMB, .closed_parts = 1, .free_bytes = 50 * kMB - 1};
+  const std::uint64_t least = 50 * kMB + closingBytes(config, kMB);
+  EXPECT_GT(least, 50 * kMB + config.chunk_bytes) << "the last chunk and the summary";
+  EXPECT_EQ(judgeStorage(config, {.part_bytes = kMB, .free_bytes = least}), StorageVerdict::kGoOn);
+  const Storage low{.part_bytes = kMB, .closed_parts = 1, .free_bytes = least - 1};
   EXPECT_EQ(judgeStorage(config, low), StorageVerdict::kStop);
-  EXPECT_EQ(reachedText(config, low), "50.0 MB are left on the disk, less than recording.min_free_MB, 50");
+  EXPECT_EQ(reachedText(config, low), "recording.min_free_MB, 50, is reached: the disk has 50.4 MB left");
   config.drops_oldest = true;
   EXPECT_EQ(judgeStorage(config, low), StorageVerdict::kDropOldest);
 }
 
 TEST(NoPolicy, NeverEndsARecording) {
-  EXPECT_EQ(judgeStorage({}, {.closed_bytes = 1'000'000 * kMB, .free_bytes = 0}), StorageVerdict::kGoOn);
+  RecordingConfig config;
+  config.min_free_bytes = 0;
+  EXPECT_EQ(judgeStorage(config, {.closed_bytes = 1'000'000 * kMB, .free_bytes = 0}), StorageVerdict::kGoOn);
 }
 
 }  // namespace

@@ -44,8 +44,10 @@ void Programs::start(const std::string& program, std::vector<std::string> argume
       }));
 }
 
-bool Programs::anyRunning() const {
-  return std::any_of(children_.begin(), children_.end(), [](const auto& child) { return child->isRunning(); });
+bool Programs::anyRunning(const std::string& program) const {
+  return std::any_of(children_.begin(), children_.end(), [&](const auto& child) {
+    return child->isRunning() && (program.empty() || child->name() == program);
+  });
 }
 
 void Programs::serveFor(std::chrono::milliseconds time) {

@@ -28,6 +28,8 @@ class Programs {
   /// Waits until `condition`, which is looked at now and then. Throws UnavailableError when a program ends with an exit
   /// code that is a problem, or nothing comes of it in minutes, and Error when the user interrupts.
   void waitUntil(const std::function<bool()>& condition);
+  /// Whether one of those that were started still runs; of this program alone, when one is named.
+  [[nodiscard]] bool anyRunning(const std::string& program = "") const;
   /// Waits for all that were started. Returns what they printed, in the order of their start.
   [[nodiscard]] std::vector<std::string> finish();
 
@@ -40,7 +42,6 @@ class Programs {
   [[nodiscard]] int domain() const { return domain_; }
 
  private:
-  [[nodiscard]] bool anyRunning() const;
   void serveFor(std::chrono::milliseconds time);
 
   std::filesystem::path folder_;

@@ -1,24 +1,16 @@
-/// What the cases share: a row of the table, a stopwatch, and a program that is run and watched.
+/// What the cases share: a folder, a stopwatch, and a program that is run and watched.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
-namespace baton::bench {
+#include "rows.hpp"
 
-struct Row {
-  std::string name;
-  double value = 0.0;
-  std::string unit;
-  std::optional<double> target{};
-  bool is_less_better = false;
-  [[nodiscard]] bool isReached() const { return !target || (is_less_better ? value <= *target : value >= *target); }
-};
+namespace baton::bench {
 
 struct Plan {
   std::uint64_t megabytes = 1000;         // of the file that is read
