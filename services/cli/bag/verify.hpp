@@ -27,7 +27,8 @@ struct Verification {
 
 /// Reads everything, every checksum with it, and books each message as the recorder did: the accounts are held against
 /// the manifests that the services sent at the end, and the certificate in the file against the accounts. Several files
-/// are the parts of one recording. Memory does not grow with their size.
+/// are the parts of one recording. Memory is that of a chunk, and of an
+/// attachment at a time.
 /// @param progress  told which part of the work is done, from 0 to 1.
 /// Throws UsageError when a file is not a recording, or the files are not parts of one, and UnavailableError when one
 /// cannot be opened.
