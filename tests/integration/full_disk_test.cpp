@@ -134,10 +134,10 @@ TEST_F(FullDisk, WithoutAReserveThePartsBeforeTheLastAreWhole) {
 
 TEST_F(FullDisk, NoStubIsLeftOfAPartForWhoseBeginningThereIsNoRoom) {
   // Where the disk ends within a part is a matter of bytes: some of these end at the beginning of one.
-  for (int ballast_kB = 0; ballast_kB < 16; ballast_kB += 8) {
-    SCOPED_TRACE(ballast_kB);
+  for (int kilobytes = 0; kilobytes < 16; kilobytes += 8) {
+    SCOPED_TRACE(kilobytes);
     for (const fs::path& file : files_) fs::remove(file);
-    std::ofstream(disk_.folder() / "ballast") << std::string(static_cast<std::size_t>(ballast_kB) << 10, 'x');
+    std::ofstream(disk_.folder() / "ballast") << std::string(static_cast<std::size_t>(kilobytes) << 10, 'x');
     record("min_free_MB: 0, chunk_kB: 4, split_MB: 0.004, topics: [plant_state]");
     EXPECT_EQ(result_.at("exit_code"), 1) << result_;
     expectVerified(1);
