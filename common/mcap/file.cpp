@@ -29,8 +29,8 @@ std::filesystem::path presentPath(std::filesystem::path path, OutputFile::IfExis
   return path;
 }
 
-int openOutput(const std::filesystem::path& path, OutputFile::IfExists if_exists) {
-  const int existing = if_exists == OutputFile::IfExists::kRefuse ? O_EXCL : O_TRUNC;
+int openOutput(const std::filesystem::path& path, bool is_own) {
+  const int existing = is_own ? O_EXCL : O_TRUNC;
   const int fd = resumed([&] { return ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | existing, 0644); });
   if (fd >= 0) return fd;
   const int error = errno;
@@ -69,7 +69,7 @@ OutputFile::OutputFile(std::filesystem::path path, IfExists if_exists)
     : path_(std::move(path)),
       present_path_(presentPath(path_, if_exists)),
       is_own_(if_exists == IfExists::kRefuse || present_path_ != path_),
-      fd_(openOutput(present_path_, if_exists)) {}
+      fd_(openOutput(present_path_, is_own_)) {}
 
 OutputFile::~OutputFile() {
   if (present_path_ != path_) discard();
@@ -127,12 +127,19 @@ void OutputFile::close() {
     fd_.reset();
     throw WriteError(failure_);
   }
-  if (const int error = fd_.reset()) fail("closing after " + std::to_string(size_) + " bytes", error);
-  if (present_path_ == path_) return;
-  if (::rename(present_path_.c_str(), path_.c_str()) == 0) return;
-  const int error = errno;
-  ::unlink(present_path_.c_str());
-  fail("it is written and cannot take its place", error);
+  const bool is_draft = present_path_ != path_;
+  if (const int error = fd_.reset()) {
+    if (is_draft) ::unlink(present_path_.c_str());
+    fail("closing after " + std::to_string(size_) + " bytes", error);
+  }
+  if (!is_draft) return;
+  if (::rename(present_path_.c_str(), path_.c_str()) != 0) {
+    const int error = errno;
+    ::unlink(present_path_.c_str());
+    fail("it is written and cannot take its place", error);
+  }
+  if (!is_name_durable_) return;  // nobody asked for it
+  if (const int error = syncFolderOf(path_)) fail("its name is not known to be on the storage device", error);
 }
 
 InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)), fd_(openInput(path_)) {

@@ -34,7 +34,8 @@ class OutputFile {
   /// or a device such as /dev/null, is written to as it is.
   enum class IfExists { kRefuse, kReplace };
 
-  /// Creates the file. Throws UnavailableError when it is there already (kRefuse) or cannot be created.
+  /// Creates the file. Throws UnavailableError when it, or for kReplace PATH.part, is there already, or when it cannot be
+  /// created.
   OutputFile(std::filesystem::path path, IfExists if_exists);
   /// Without close(), what was written stays as it is; PATH.part is taken away.
   ~OutputFile();

@@ -148,8 +148,14 @@ TopicReaders::Writer TopicReaders::of(std::uint32_t topic, const dds::Guid& writ
     result.lasts = options.profile == dds::Profile::kEvent;
   }
   result.is_recorded = selection_.isRecorded(result.topic);
-  const std::lock_guard lock(facts_mutex_);
-  if (const auto found = metadata_.find(writer); found != metadata_.end()) result.metadata = found->second;
+  {
+    const std::lock_guard lock(facts_mutex_);
+    if (const auto found = metadata_.find(writer); found != metadata_.end()) result.metadata = found->second;
+  }
+  if (std::string& service = result.metadata["service"]; service.empty()) {
+    // Its endpoints may have been known before the process was.
+    if (const auto peer = service_.participant().peer(dds::prefixOf(writer))) service = peer->service;
+  }
   result.metadata["type"] = result.type;
   result.metadata["writer"] = dds::toString(writer);
   return result;

@@ -65,6 +65,8 @@ class Recording {
     return stream.index < written_.size() && written_[stream.index].stream != nullptr;
   }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Of those that are there.
+  [[nodiscard]] const std::filesystem::path& firstPart() const { return parts_.front().path; }
   [[nodiscard]] unsigned part() const { return index_; }
   [[nodiscard]] std::uint64_t messages() const { return messages_; }
   /// Of these, those that no end of this process can take away any more.

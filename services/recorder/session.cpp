@@ -9,6 +9,7 @@
 #include "dds/codec.hpp"
 #include "mcap/lookup.hpp"
 #include "run_manifest.hpp"
+#include "runtime/recording_parts.hpp"
 
 namespace baton {
 namespace {
@@ -70,6 +71,7 @@ ExitCode RecordingSession::run() {
     tend();
     if (isDone()) break;
   }
+  has_run_ended_ = true;  // nothing can be asked any more
   closeAll();
   for (const msg::RecordRequest& request : requests) reply(request);
   for (const msg::RecordRequest& request : takeRequests()) reply(request);
@@ -83,12 +85,14 @@ void RecordingSession::takeBatch(const SampleQueue::Batch& batch) {
   for (const SampleQueue::Entry& entry : batch.entries) {
     const auto payload = batch.payload(entry);
     Stream& stream = streamOf(entry.topic, entry.writer);
-    const std::uint64_t missing = stream.received->second.missing;
     // What is not in the account may be here twice.
     if (stream.is_booked && !ledger_.book(*stream.received, entry.sequence, payload)) continue;
     if (stream.credit) credit_.came(*stream.credit, payload);
     if (!stream.is_status) ++progress_;
-    if (stream.is_recorded) keep(stream, entry, payload, stream.received->second.missing - missing);
+    // Also what found no room in the queue, which is booked behind the batch it was dropped from.
+    const std::uint64_t missing = stream.received->second.missing;
+    const std::uint64_t lost_before = missing - std::exchange(stream.missing_so_far, missing);
+    if (stream.is_recorded) keep(stream, entry, payload, lost_before);
     if (stream.role != Stream::Role::kOther) learn(stream, payload);
   }
   for (const SampleQueue::Drop& drop : batch.drops) {
@@ -112,6 +116,7 @@ Stream& RecordingSession::streamOf(std::uint32_t topic, const dds::Guid& writer)
   stream.is_booked = facts.is_recorded || facts.topic == dds::topics::kServiceManifest.name ||
                      facts.topic == dds::topics::kServiceStatus.name;
   stream.is_status = dds::isStatusTopic(facts.topic);
+  stream.is_manifest = facts.topic == dds::topics::kServiceManifest.name;
   stream.lasts = facts.lasts;
   if (!facts.is_recorded) ledger_.leaveOut(facts.topic);
   return stream;
@@ -119,7 +124,7 @@ Stream& RecordingSession::streamOf(std::uint32_t topic, const dds::Guid& writer)
 
 void RecordingSession::keep(const Stream& stream, const SampleQueue::Entry& entry, std::span<const std::byte> payload,
                             std::uint64_t lost_before) {
-  if (holes_.isOpen()) return holes_.leaveOut();
+  if (holes_.isOpen() && !stream.is_manifest) return holes_.leaveOut();
   if (ring_) {
     const Ring::Lasting lasting = !stream.lasts      ? Ring::Lasting::kNo
                                   : stream.is_status ? Ring::Lasting::kLatest
@@ -182,6 +187,7 @@ msg::RecordReply RecordingSession::answer(const msg::RecordRequest& request) {
   msg::RecordReply reply;
   std::string text = control_.objection(request.action());
   if (text.empty() && has_run_ended_) text = "the run is over";
+  if (text.empty()) text = objectionTo(request.path().c_str(), request.action());
   if (!text.empty()) {
     reply.text(text);
     return reply;
@@ -212,7 +218,19 @@ msg::RecordReply RecordingSession::answer(const msg::RecordRequest& request) {
   return reply;
 }
 
+/// Paths come from anybody. A file that is there is never replaced.
+std::string RecordingSession::objectionTo(const std::string& path, msg::RecordAction action) const {
+  if (path.empty()) return "";
+  if (!std::filesystem::path(path).is_absolute()) return "expected an absolute path, found " + path;
+  const bool is_taken = action == msg::RECORD_SNAPSHOT && path == path_;
+  return is_taken ? path + " is where the ring goes at the end of the run" : "";
+}
+
 void RecordingSession::start(const std::string& path) {
+  const bool is_split = config_.split_bytes > 0 || config_.split_steps > 0;
+  if (const auto others = furtherPartsOf(path); is_split && !others.empty()) {
+    throw UnavailableError(others.front().string() + " is there already, and would be a part of it");
+  }
   recording_ = std::make_unique<Recording>(path, config_, origin_, credit_.elapsedSteps(), credit_.stateStep());
   holes_.clear();
   path_ = path;

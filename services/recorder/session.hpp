@@ -47,6 +47,7 @@ class RecordingSession {
   [[nodiscard]] std::vector<msg::RecordRequest> takeRequests();
   void reply(const msg::RecordRequest& request);
   [[nodiscard]] msg::RecordReply answer(const msg::RecordRequest& request);
+  [[nodiscard]] std::string objectionTo(const std::string& path, msg::RecordAction action) const;
   void start(const std::string& path);
   std::string pathOf(const msg::RecordRequest& request) const;
   // what is done now and then

@@ -39,6 +39,7 @@ void RecordingSession::makeRoom() {
         return publishStatus();
       }
       recording_->dropOldestPart();
+      path_ = recording_->firstPart().string();
     }
   } catch (const std::exception& error) {
     fail(error.what());

@@ -24,7 +24,9 @@ struct Stream {
   bool is_recorded = true;            // not left out on purpose
   bool is_booked = true;              // so is what the account itself learns from
   bool is_status = false;
-  bool lasts = false;  // late joiners are told of what was before
+  bool is_manifest = false;          // what is sent at the end: kept in a pause as well
+  std::uint64_t missing_so_far = 0;  // of what came, when its latest sample came
+  bool lasts = false;                // late joiners are told of what was before
 
   [[nodiscard]] const std::string& topic() const { return received->first.first; }
   [[nodiscard]] const dds::Guid& writer() const { return received->first.second; }

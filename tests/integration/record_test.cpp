@@ -152,6 +152,13 @@ TEST(Record, PartsFollowEachOtherAndTheLastOneVouchesForAll) {
   const Finished still = run.bench.baton({"run", scenario, "--out", run.file.string()});
   EXPECT_EQ(still.exit_code, 2);
   EXPECT_NE(still.err.find("run_0001.mcap"), std::string::npos) << still.err;
+  // What only has the name of a part is somebody else's.
+  const fs::path other = run.bench.write("run_2024.mcap", "precious");
+  const Finished spared = run.bench.baton({"run", scenario, "--out", run.file.string(), "--overwrite"});
+  EXPECT_EQ(spared.exit_code, 2);
+  EXPECT_NE(spared.err.find("run_2024.mcap, which is there and is none"), std::string::npos) << spared.err;
+  EXPECT_EQ(fs::file_size(other), 8U);
+  fs::remove(other);
   const Finished replaced = run.bench.baton({"run", scenario, "--out", run.file.string(), "--overwrite"});
   EXPECT_EQ(replaced.exit_code, 0) << replaced.out << replaced.err;
 }
@@ -272,6 +279,18 @@ TEST(Record, IsStartedPausedResumedAndStoppedWhileTheRunGoesOn) {
   EXPECT_FALSE(fs::exists(one.run.recording)) << "nothing was recorded there";
   expectVerified(one.bench, {one.file("a.mcap")});
   expectVerified(one.bench, {one.file("b.mcap")});
+}
+
+TEST(Record, APauseThatLastsToTheEndLeavesNobodyUnvouched) {
+  SteppedRun one("", {"--paused"});
+  one.step(50);
+  EXPECT_EQ(one.record({"pause"}).at("state"), "paused");
+  one.step(50);
+  const Finished down = one.bench.baton({"down"});
+  EXPECT_EQ(down.exit_code, 0) << down.out << down.err;
+  EXPECT_EQ(certificateOf(one.run.recording).at("run_is_over"), true);
+  EXPECT_EQ(stateSteps(one.run.recording), range(0, 50));
+  expectVerified(one.bench, {one.run.recording});
 }
 
 TEST(Record, ARunThatWasNeverRecordedIsNone) {

@@ -21,8 +21,15 @@ struct VerifyRequest {
 void printText(const Verification& found) {
   fmt::print("{}: {}\n", fmt::join(found.files, ", "), nameOf(found.verdict()));
   if (found.verdict() == Verdict::kComplete) {
-    fmt::print("            proven from the bytes: {} services vouch for what they sent, all of it is here\n",
-               found.ledger.manifests());
+    if (found.ledger.manifests() > 0) {
+      fmt::print("            proven from the bytes: {} services vouch for what they sent, all of it is here\n",
+                 found.ledger.manifests());
+    } else {
+      fmt::print(
+          "            by the bytes no sample is missing between a writer's first and last; the run went on when "
+          "this\n");
+      fmt::print("            ended, so nobody vouches for what was sent last\n");
+    }
     fmt::print("            and the certificate in the file agrees; every checksum is right\n");
     if (found.summary != "complete") fmt::print("            by its certificate: {}\n", found.summary);
   }

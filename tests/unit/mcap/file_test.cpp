@@ -89,6 +89,10 @@ TEST_F(FileTest, WhatIsReplacedIsThereUntilItsSuccessorIsWhole) {
     EXPECT_THROW(file.close(), WriteError);
   }
   EXPECT_EQ(loadFile(path), payload(20, 2)) << "no room";
+  saveFile(part, payload(5, 5));
+  EXPECT_THROW(OutputFile(path, OutputFile::IfExists::kReplace), UnavailableError) << "somebody else's";
+  EXPECT_EQ(loadFile(part), payload(5, 5));
+  std::filesystem::remove(part);
   EXPECT_FALSE(std::filesystem::exists(part));
 }
 
