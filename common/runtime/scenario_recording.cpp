@@ -45,7 +45,7 @@ void readCompressionLevel(const YamlMap& map, RecordingConfig& recording) {
 void requireTogether(const YamlMap& map, const RecordingConfig& recording) {
   const bool is_split = recording.split_bytes > 0 || recording.split_steps > 0;
   if (recording.ring_steps > 0) {
-    for (const char* key : {"split_MB", "split_s", "start"}) {
+    for (const char* key : {"split_MB", "split_s", "start", "max_MB", "when_full"}) {
       if (const auto node = map.find(key)) node->fail("expected no such thing beside ring_s: a ring is in memory");
     }
   } else if (const auto node = map.find("ring_MB")) {

@@ -115,7 +115,9 @@ void Recording::openChannel(Written& written, const Sample& sample) {
 }
 
 void Recording::splitWhenFull(std::uint64_t elapsed, std::uint64_t step) {
-  if (!isPartFull(config_, file_->statistics().file_bytes, elapsed - part_elapsed_)) return;
+  // What a part begins with, scenario and robot, fills none.
+  const mcap::WriterStatistics so_far = file_->statistics();
+  if (!isPartFull(config_, so_far.chunks > 0 ? so_far.file_bytes : 0, elapsed - part_elapsed_)) return;
   // The next one first: without it this one goes on.
   std::unique_ptr<mcap::Writer> next = openPart(index_ + 1, step);
   file_->addMetadata("baton.part_end", {{"next", partOf(path_, index_ + 1).filename().string()}});

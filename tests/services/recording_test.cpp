@@ -83,9 +83,9 @@ class RecordingTest : public testing::Test {
 
   test::Bench bench_;
   RecordingConfig config_;
-  const Origin origin_{.run = {{"run", "the-run"}, {"scenario", "short"}},
-                       .attachments = {{"scenario.yaml", "application/yaml", "name: short"},
-                                       {"robot.yaml", "application/yaml", "name: rpp"}}};
+  Origin origin_{.run = {{"run", "the-run"}, {"scenario", "short"}},
+                 .attachments = {{"scenario.yaml", "application/yaml", "name: short"},
+                                 {"robot.yaml", "application/yaml", "name: rpp"}}};
   Ledger ledger_{{}};
   std::map<std::size_t, Stream> streams_;
   std::unique_ptr<Recording> recording_;
@@ -193,6 +193,21 @@ TEST_F(RecordingTest, PartsFollowEachOtherWithoutASeam) {
       EXPECT_FALSE(message.schema->data.empty());
     });
     EXPECT_LT(fs::file_size(files[i]), 100'000u) << files[i];
+  }
+}
+
+TEST_F(RecordingTest, WhatAPartBeginsWithFillsNone) {
+  origin_.attachments.push_back({"checkpoint.mcap", "application/mcap", std::string(20'000, 'x')});
+  open(", split_MB: 0.01");
+  for (int i = 0; i < 100; ++i) {
+    recording_->splitWhenFull(0, static_cast<std::uint64_t>(i));
+    write(0);
+  }
+  const Json certificate = finish();
+  expectAccount(parts(), certificate);
+  ASSERT_GT(parts().size(), 1u);
+  for (std::size_t i = 0; i + 1 < parts().size(); ++i) {
+    EXPECT_GE(mcap::Reader(parts()[i]).statistics().message_count, 10u) << "a chunk at least";
   }
 }
 

@@ -75,6 +75,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadInput{"HalfAStep", "", "  split_s: 0.0005\n", "split_s", "", ""},
                     BadInput{"NoStep", "", "  ring_s: 0\n", "ring_s", "at least one step", ""},
                     BadInput{"RingAndParts", "", "  ring_s: 1\n  split_MB: 10\n", "split_MB", "beside ring_s", ""},
+                    BadInput{"RingAndBudget", "", "  ring_s: 1\n  max_MB: 10\n", "max_MB", "beside ring_s", ""},
                     BadInput{"RingOnRequest", "", "  ring_s: 1\n  start: on_request\n", "start", "beside ring_s", ""},
                     BadInput{"RingMemoryAlone", "", "  ring_MB: 10\n", "ring_MB", "ring_s beside it", ""},
                     BadInput{"FullOfWhat", "", "  when_full: stop\n", "when_full", "max_MB or min_free_MB", ""},
