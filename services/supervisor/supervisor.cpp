@@ -15,7 +15,9 @@ namespace baton {
 namespace {
 
 // How long the others may take. What is still being written is waited for longest: a disk may be slow.
-constexpr std::chrono::seconds kStartLimit{60};     // for the processes to find each other
+constexpr std::chrono::seconds kStartLimit{60};  // for the processes to find each other
+constexpr int kNewsLooks = 30;
+constexpr std::chrono::milliseconds kNewsEvery{10};
 constexpr std::chrono::seconds kPlantPatience{10};  // to say that the run has ended
 constexpr std::chrono::seconds kFilePatience{60};   // for the recorder to close its file
 constexpr std::chrono::seconds kStopPatience{3};    // for a process to end
@@ -169,12 +171,21 @@ msg::BatonStatus Supervisor::lastBatonStatus() {
 void Supervisor::childEnded(Child& child, const Child::End& end) {
   spdlog::info("ended service={} pid={} {}", child.name(), child.pid(), end.text());
   if (stage_ == Stage::kRunning) {
-    childFailed(child, end);
+    whenBegunOrNot(isRunning(kPlantName) ? kNewsLooks : 0, [this, &child, end] { childFailed(child, end); });
   } else if (stage_ == Stage::kClosingRecording && child.name() == kRecorderName) {
     if (end.by_signal || end.value != 0) fail(ExitCode::kFailed, "the recording is not complete");
     stopChildren();
   }
   if (!anyRunning()) service_.stop();
+}
+
+/// An exit is heard of at once, that the run has begun a little later: the plant says so ten times a second.
+void Supervisor::whenBegunOrNot(int looks, const std::function<void()>& judge) {
+  if (startup_s_ >= 0.0 || looks == 0) return judge();
+  auto timer = std::make_shared<boost::asio::steady_timer>(service_.executor(), kNewsEvery);
+  timer->async_wait([this, timer, looks, judge](const boost::system::error_code& error) {
+    if (!error && stage_ == Stage::kRunning) whenBegunOrNot(looks - 1, judge);
+  });
 }
 
 void Supervisor::childFailed(Child& child, const Child::End& end) {

@@ -6,6 +6,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -37,6 +38,7 @@ class Supervisor {
   void limitStart();
   void start(const std::string& role, const std::string& name, const std::string& law);
   void childEnded(Child& child, const Child::End& end);
+  void whenBegunOrNot(int looks, const std::function<void()>& judge);
   void childFailed(Child& child, const Child::End& end);
   void judge(const msg::SwapOutcome& swap);
   void fail(ExitCode code, const std::string& reason);
