@@ -72,13 +72,13 @@ OutputFile::OutputFile(std::filesystem::path path, IfExists if_exists)
       fd_(openOutput(present_path_, is_own_)) {}
 
 OutputFile::~OutputFile() {
-  if (present_path_ != path_) discard();
+  if (isDraft()) discard();
 }
 
 void OutputFile::discard() noexcept {
-  if (fd_.get() < 0) return;
   fd_.reset();
-  if (is_own_) ::unlink(present_path_.c_str());
+  if (is_own_ && !present_path_.empty()) ::unlink(present_path_.c_str());
+  present_path_.clear();
 }
 
 void OutputFile::fail(const std::string& what, int error) {
@@ -123,22 +123,16 @@ void OutputFile::sync() {
 
 void OutputFile::close() {
   if (!failure_.empty()) {
-    if (present_path_ != path_) discard();
     fd_.reset();
     throw WriteError(failure_);
   }
-  const bool is_draft = present_path_ != path_;
-  if (const int error = fd_.reset()) {
-    if (is_draft) ::unlink(present_path_.c_str());
-    fail("closing after " + std::to_string(size_) + " bytes", error);
+  if (const int error = fd_.reset()) fail("closing after " + std::to_string(size_) + " bytes", error);
+  const bool was_draft = isDraft();
+  if (was_draft && ::rename(present_path_.c_str(), path_.c_str()) != 0) {
+    fail("it is written and cannot take its place", errno);
   }
-  if (!is_draft) return;
-  if (::rename(present_path_.c_str(), path_.c_str()) != 0) {
-    const int error = errno;
-    ::unlink(present_path_.c_str());
-    fail("it is written and cannot take its place", error);
-  }
-  if (!is_name_durable_) return;  // nobody asked for it
+  present_path_.clear();
+  if (!was_draft || !is_name_durable_) return;
   if (const int error = syncFolderOf(path_)) fail("its name is not known to be on the storage device", error);
 }
 

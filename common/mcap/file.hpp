@@ -34,8 +34,8 @@ class OutputFile {
   /// or a device such as /dev/null, is written to as it is.
   enum class IfExists { kRefuse, kReplace };
 
-  /// Creates the file. Throws UnavailableError when it, or for kReplace PATH.part, is there already, or when it cannot be
-  /// created.
+  /// Creates the file. Throws UnavailableError when it, or for kReplace PATH.part, is there already, or when it cannot
+  /// be created.
   OutputFile(std::filesystem::path path, IfExists if_exists);
   /// Without close(), what was written stays as it is; PATH.part is taken away.
   ~OutputFile();
@@ -60,10 +60,11 @@ class OutputFile {
   [[nodiscard]] std::uint64_t durableSize() const { return durable_size_; }
 
  private:
+  [[nodiscard]] bool isDraft() const { return !present_path_.empty() && present_path_ != path_; }
   [[noreturn]] void fail(const std::string& what, int error);
 
   std::filesystem::path path_;
-  std::filesystem::path present_path_;  // until it is closed
+  std::filesystem::path present_path_;  // empty once it is closed or gone
   bool is_own_;                         // made here, not a device that was there
   Descriptor fd_;
   std::uint64_t size_ = 0;

@@ -62,6 +62,8 @@ TEST_F(FileTest, AShortWriteIsAnErrorThatNamesFileAndBytes) {
   EXPECT_THROW(file.sync(), WriteError);
   EXPECT_THROW(file.close(), WriteError);
   EXPECT_EQ(std::filesystem::file_size(path), 1000U);
+  file.discard();
+  EXPECT_FALSE(std::filesystem::exists(path)) << "also when closing it has failed";
 }
 
 TEST_F(FileTest, WhatIsReplacedIsThereUntilItsSuccessorIsWhole) {
