@@ -66,15 +66,22 @@ bool Ledger::hasManifestOf(const std::string& service) const {
                      [&](const msg::ServiceManifest& manifest) { return service == manifest.name().c_str(); });
 }
 
-std::vector<std::string> Ledger::unvouched() const {
-  // Only on topics that the run's own services count: operators come and go without a manifest.
-  std::set<std::string> counted;
-  std::set<Key> vouched;
+std::set<Ledger::Key> Ledger::vouchedFor() const {
+  std::set<Key> result;
   for (const msg::ServiceManifest& manifest : manifests_) {
     for (const msg::StreamManifest& sent : manifest.streams()) {
-      if (services_.contains(manifest.name().c_str())) counted.insert(sent.topic().c_str());
-      vouched.insert({sent.topic().c_str(), dds::Guid{sent.writer()}});
+      result.insert({sent.topic().c_str(), dds::Guid{sent.writer()}});
     }
+  }
+  return result;
+}
+
+std::vector<std::string> Ledger::unvouched(const std::set<Key>& vouched) const {
+  // Only on topics that the run's own services count: operators come and go without a manifest.
+  std::set<std::string> counted;
+  for (const msg::ServiceManifest& manifest : manifests_) {
+    if (!services_.contains(manifest.name().c_str())) continue;
+    for (const msg::StreamManifest& sent : manifest.streams()) counted.insert(sent.topic().c_str());
   }
   std::vector<std::string> result;
   for (const auto& [key, stream] : streams_) {
@@ -126,12 +133,8 @@ std::vector<std::string> Ledger::problems() const {
   for (const msg::ServiceManifest& manifest : manifests_) {
     for (std::string& problem : problemsOf(manifest)) result.push_back(std::move(problem));
   }
-  for (std::string& problem : unvouched()) result.push_back(std::move(problem));
-  std::set<Key> vouched;
-  for (const msg::ServiceManifest& manifest : manifests_) {
-    for (const msg::StreamManifest& sent : manifest.streams())
-      vouched.insert({sent.topic().c_str(), dds::Guid{sent.writer()}});
-  }
+  const std::set<Key> vouched = vouchedFor();
+  for (std::string& problem : unvouched(vouched)) result.push_back(std::move(problem));
   for (std::string& problem : gapsBut(vouched)) result.push_back(std::move(problem));
   return result;
 }

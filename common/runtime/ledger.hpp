@@ -94,7 +94,8 @@ class Ledger {
   void read(const std::string& topic, std::span<const std::byte> payload);
   void note(Stream& stream, std::uint64_t first_sequence, std::uint64_t last_sequence, const char* reason);
   [[nodiscard]] bool hasManifestOf(const std::string& service) const;
-  [[nodiscard]] std::vector<std::string> unvouched() const;
+  [[nodiscard]] std::set<Key> vouchedFor() const;
+  [[nodiscard]] std::vector<std::string> unvouched(const std::set<Key>& vouched) const;
   [[nodiscard]] std::vector<std::string> problemsOf(const msg::ServiceManifest& manifest) const;
   [[nodiscard]] std::vector<std::string> gapsBut(const std::set<Key>& known) const;
 

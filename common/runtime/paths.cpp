@@ -67,6 +67,15 @@ fs::path findScenario(const std::string& name) {
   throw UsageError("scenario " + name + ": expected a file or one of " + names + ", found neither");
 }
 
+std::filesystem::path outputPath(const std::string& out) {
+  std::filesystem::path path = std::filesystem::absolute(out);
+  if (!std::filesystem::is_directory(path.parent_path())) {
+    throw UsageError("--out " + out + ": expected a file in an existing folder, and " + path.parent_path().string() +
+                     " is none");
+  }
+  return path;
+}
+
 std::string newRunId() {
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   return fmt::format("{:%Y%m%d-%H%M%S}-{:04x}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)),

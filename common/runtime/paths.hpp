@@ -23,6 +23,10 @@ namespace baton {
 /// listing what there is.
 [[nodiscard]] std::filesystem::path findScenario(const std::string& name);
 
+/// The absolute path of a file to be made, as a person names it with --out. Throws UsageError when its folder is not
+/// there.
+[[nodiscard]] std::filesystem::path outputPath(const std::string& out);
+
 /// "20261122-031512-4f2a": sorts by time, newer runs after older ones.
 [[nodiscard]] std::string newRunId();
 

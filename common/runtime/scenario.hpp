@@ -81,6 +81,7 @@ struct RecordingConfig {
   std::vector<std::string> except;                   // patterns of those that are left out
   std::uint64_t split_bytes = 0;                     // a part that has grown to this is followed by another; 0: never
   std::uint64_t split_steps = 0;                     // likewise, by steps of the run
+  [[nodiscard]] bool isSplit() const { return split_bytes > 0 || split_steps > 0; }
   std::uint64_t ring_steps = 0;  // kept in memory alone, until they are asked for or the run ends; 0: no ring
   std::uint64_t ring_bytes = 256'000'000;
   std::uint64_t max_bytes = 0;  // of all parts together; 0: no limit

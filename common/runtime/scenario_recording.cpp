@@ -43,7 +43,6 @@ void readCompressionLevel(const YamlMap& map, RecordingConfig& recording) {
 
 /// What only makes sense beside something else.
 void requireTogether(const YamlMap& map, const RecordingConfig& recording) {
-  const bool is_split = recording.split_bytes > 0 || recording.split_steps > 0;
   if (recording.ring_steps > 0) {
     for (const char* key : {"split_MB", "split_s", "start", "max_MB", "when_full"}) {
       if (const auto node = map.find(key)) node->fail("expected no such thing beside ring_s: a ring is in memory");
@@ -55,7 +54,7 @@ void requireTogether(const YamlMap& map, const RecordingConfig& recording) {
     if (!map.has("max_MB") && !map.has("min_free_MB")) {
       node->fail("expected max_MB or min_free_MB beside it, at which something is full");
     }
-    if (recording.drops_oldest && !is_split)
+    if (recording.drops_oldest && !recording.isSplit())
       node->fail("expected split_MB or split_s beside it: only parts are dropped");
   }
   // The file's own index comes on top of its chunks, and the first part has to be whole before a second one can begin.

@@ -9,6 +9,7 @@
 #include "cell_target.hpp"
 #include "messages/state_names.hpp"
 #include "runtime/json.hpp"
+#include "runtime/paths.hpp"
 #include "runtime/progress_line.hpp"
 #include "runtime/service_options.hpp"
 
@@ -97,11 +98,7 @@ const char* doneText(msg::RecordAction action) {
 /// The recorder's own folder is not this one.
 std::string absoluteOut(const std::string& out) {
   if (out.empty()) return "";
-  const std::filesystem::path path = std::filesystem::absolute(out).lexically_normal();
-  if (!std::filesystem::is_directory(path.parent_path())) {
-    throw UsageError("--out " + out + ": expected a file in an existing folder, and " + path.parent_path().string() +
-                     " is none");
-  }
+  const std::filesystem::path path = outputPath(out).lexically_normal();
   if (std::filesystem::exists(path)) throw UsageError("--out " + out + " exists: choose another name");
   constexpr std::size_t kMaxPath = 400;
   if (path.string().size() > kMaxPath) throw UsageError("--out: expected a path of at most 400 characters");

@@ -98,16 +98,12 @@ bool isPartOf(const fs::path& file, const fs::path& recording) {
 
 /// The recording and, where it is split, its other parts: what is left of an earlier one would be in the way.
 fs::path checkedOut(const RunRequest& request, const RecordingConfig& recording) {
-  fs::path out = fs::absolute(request.out);
-  if (!fs::is_directory(out.parent_path())) {
-    throw UsageError("--out " + request.out + ": expected a file in an existing folder, and " +
-                     out.parent_path().string() + " is none");
-  }
+  fs::path out = outputPath(request.out);
   if (fs::exists(out) && !fs::is_regular_file(out)) {
     throw UsageError("--out " + request.out + ": expected a file, and it is a folder or a device");
   }
   std::vector<fs::path> there;
-  if (recording.split_bytes > 0 || recording.split_steps > 0) there = furtherPartsOf(out);
+  if (recording.isSplit()) there = furtherPartsOf(out);
   for (const fs::path& file : there) {
     if (isPartOf(file, out)) continue;
     throw UsageError("--out " + request.out + ": a part of it would be called " + file.string() +

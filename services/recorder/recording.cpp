@@ -37,8 +37,6 @@ void attach(const Attachment& attachment, mcap::Writer& file) {
   file.addAttachment(attachment.name, attachment.media_type, 0, 0, bytesOf(attachment.text));
 }
 
-bool isSplit(const RecordingConfig& config) { return config.split_bytes > 0 || config.split_steps > 0; }
-
 }  // namespace
 
 Recording::Recording(std::filesystem::path path, const RecordingConfig& config, const Origin& origin,
@@ -69,7 +67,7 @@ std::unique_ptr<mcap::Writer> Recording::openFile(const std::filesystem::path& p
                                                   std::uint64_t from_step) const {
   auto file = std::make_unique<mcap::Writer>(path, fileOptions(config_));
   file->addMetadata("baton.run", origin_.run);
-  if (isSplit(config_)) {
+  if (config_.isSplit()) {
     file->addMetadata("baton.part", {{"index", std::to_string(index)},
                                      {"run", origin_.run.at("run")},
                                      {"first", path_.filename().string()},

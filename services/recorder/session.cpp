@@ -43,8 +43,7 @@ RecordingSession::RecordingSession(Service& service, SampleQueue& queue, const T
       credit_(service.scenario()),
       ledger_(servicesBut(kRecorderName, service.scenario())),
       path_(service.options().out),
-      is_limited_(config_.split_bytes > 0 || config_.split_steps > 0 || config_.max_bytes > 0 ||
-                  config_.min_free_bytes > 0) {
+      is_limited_(config_.isSplit() || config_.max_bytes > 0 || config_.min_free_bytes > 0) {
   free_bytes_ = freeBytes();
   if (control_.isRing()) {
     ring_ = std::make_unique<Ring>(config_.ring_steps, config_.ring_bytes);
@@ -113,10 +112,9 @@ Stream& RecordingSession::streamOf(std::uint32_t topic, const dds::Guid& writer)
   stream.role = roleOf(facts.topic);
   stream.credit = credit_.placeOf(facts.topic);
   stream.is_recorded = facts.is_recorded;
-  stream.is_booked = facts.is_recorded || facts.topic == dds::topics::kServiceManifest.name ||
-                     facts.topic == dds::topics::kServiceStatus.name;
-  stream.is_status = dds::isStatusTopic(facts.topic);
   stream.is_manifest = facts.topic == dds::topics::kServiceManifest.name;
+  stream.is_booked = facts.is_recorded || stream.is_manifest || facts.topic == dds::topics::kServiceStatus.name;
+  stream.is_status = dds::isStatusTopic(facts.topic);
   stream.lasts = facts.lasts;
   if (!facts.is_recorded) ledger_.leaveOut(facts.topic);
   return stream;
@@ -227,9 +225,10 @@ std::string RecordingSession::objectionTo(const std::string& path, msg::RecordAc
 }
 
 void RecordingSession::start(const std::string& path) {
-  const bool is_split = config_.split_bytes > 0 || config_.split_steps > 0;
-  if (const auto others = furtherPartsOf(path); is_split && !others.empty()) {
-    throw UnavailableError(others.front().string() + " is there already, and would be a part of it");
+  if (config_.isSplit()) {
+    if (const auto others = furtherPartsOf(path); !others.empty()) {
+      throw UnavailableError(others.front().string() + " is there already, and would be a part of it");
+    }
   }
   recording_ = std::make_unique<Recording>(path, config_, origin_, credit_.elapsedSteps(), credit_.stateStep());
   holes_.clear();

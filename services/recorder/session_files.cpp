@@ -25,7 +25,8 @@ void RecordingSession::makeRoom() {
     for (;;) {
       Storage storage = recording_->storage();
       // Others write there as well; between two chunks nothing of ours comes to it.
-      if (std::exchange(measured_bytes_, recording_->bytes()) != recording_->bytes()) free_bytes_ = freeBytes();
+      const std::uint64_t bytes = storage.closed_bytes + storage.part_bytes;
+      if (std::exchange(measured_bytes_, bytes) != bytes) free_bytes_ = freeBytes();
       storage.free_bytes = free_bytes_;
       const StorageVerdict verdict = judgeStorage(config_, storage);
       if (verdict == StorageVerdict::kGoOn) return;

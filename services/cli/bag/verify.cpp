@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "mcap/lookup.hpp"
 #include "mcap/reader.hpp"
 #include "report/recording.hpp"
 #include "runtime/scenario.hpp"
@@ -127,8 +128,7 @@ class Booking {
   }
 
   Ledger::Stream* streamOf(const mcap::Channel& channel) {
-    const auto writer = channel.metadata.find("writer");
-    const auto guid = writer == channel.metadata.end() ? std::nullopt : dds::guidCalled(writer->second);
+    const auto guid = dds::guidCalled(mcap::valueOf(channel.metadata, "writer"));
     return guid ? &result_.ledger.streamOf({channel.topic, *guid}) : nullptr;
   }
 
@@ -168,7 +168,7 @@ std::vector<std::string> writersOf(const std::vector<Part>& parts) {
   return servicesBut(kRecorderName, parseScenario("scenario.yaml", *scenario, "robot.yaml", *robot));
 }
 
-void judge(const std::vector<Part>& parts, Verification& result) {
+void judge(const std::vector<Part>& parts, const std::optional<std::string>& certificate, Verification& result) {
   const auto add = [](std::vector<std::string>& to, const std::vector<std::string>& sentences) {
     to.insert(to.end(), sentences.begin(), sentences.end());
   };
@@ -185,7 +185,6 @@ void judge(const std::vector<Part>& parts, Verification& result) {
   }
   try {
     for (const std::string& service : writersOf(parts)) result.ledger.expect(service);
-    const auto certificate = attached(parts, "certificate.json");
     if (certificate) result.ledger.excuse(*certificate);
     add(result.missing, result.ledger.problems());
     if (!certificate) return result.missing.emplace_back("it has no certificate"), void();
@@ -209,14 +208,15 @@ Verdict Verification::verdict() const {
 Verification verifyRecording(const std::vector<std::string>& files, const std::function<void(double)>& progress) {
   Verification result;
   const std::vector<Part> parts = openParts(files, progress, result.missing);
-  if (const auto certificate = attached(parts, "certificate.json")) result.ledger.beginAt(*certificate);
+  const auto certificate = attached(parts, "certificate.json");
+  if (certificate) result.ledger.beginAt(*certificate);
   Booking booking(result, parts, progress);
   for (const Part& part : parts) {
     result.files.push_back(part.file);
     result.bytes += part.reader->info().file_bytes;
     booking.book(part);
   }
-  judge(parts, result);
+  judge(parts, certificate, result);
   return result;
 }
 
