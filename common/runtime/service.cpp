@@ -44,9 +44,11 @@ Service::Service(ServiceOptions options, Scenario scenario)
   status_ = &output(dds::topics::kServiceStatus);
   events_ = &output(dds::topics::kEvent);
   manifest_ = &output(dds::topics::kServiceManifest);
+  leavesAfter(manifest_->raw());
   if (options_.role != kPlantName) {
     input(dds::topics::kSimStatus, {kPlantName}, [this](const msg::SimStatus& status, const dds::RawSample& sample) {
       if (participant_.isSecondCopy(sample.writer)) return;
+      if (on_sim_status_) on_sim_status_(status);
       take_ = std::max(take_, status.take());
       const bool finished = status.state() == msg::SIM_STATE_FINISHED;
       if (finished || status.state() == msg::SIM_STATE_ABORTED) runEnded(status.step(), finished);
@@ -274,8 +276,13 @@ void Service::awaitSignal() {
 /// In the middle of a run too what was sent is vouched for.
 void Service::leave() {
   publishManifest();
-  constexpr int kPatience_ms = 1000;
-  manifest_->raw().waitForAcknowledgments(kPatience_ms);
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point limit = Clock::now() + std::chrono::seconds(1);
+  for (dds::RawWriter* const writer : last_words_) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(limit - Clock::now());
+    if (left.count() <= 0) break;  // somebody who died without a word is not waited for
+    writer->waitForAcknowledgments(static_cast<int>(left.count()));
+  }
   executor_.stop();
 }
 

@@ -48,6 +48,9 @@ class Service {
   void input(const dds::Topic<T>& topic, const std::vector<std::string>& writers,
              typename dds::Reader<T>::Callback handler);
 
+  /// What was written there last is for somebody: the process does not leave before its readers have it, or too late.
+  void leavesAfter(dds::RawWriter& writer) { last_words_.push_back(&writer); }
+
   /// Keeps something of the caller's own (the recorder's readers) in the barrier.
   void require(const std::string& topic, std::function<std::set<dds::GuidPrefix>()> matched,
                std::vector<std::string> peers);
@@ -79,6 +82,8 @@ class Service {
   void considerRewind();
   /// This service takes no part in the steps: at the end of the run nothing more is waited for.
   void answersNoSteps() { answers_steps_ = false; }
+  /// Each word of the plant on the run, before its end has consequences here. From handlers; not in the plant itself.
+  void onSimStatus(std::function<void(const msg::SimStatus&)> handler) { on_sim_status_ = std::move(handler); }
   /// Called once on the executor when the run has ended and this service's manifest is out.
   void onEnd(std::function<void()> handler) { on_end_ = std::move(handler); }
 
@@ -107,6 +112,8 @@ class Service {
   void giveWay(const std::string& why);
   /// Matched with everybody it needs; any thread.
   [[nodiscard]] bool isReady() const { return ready_; }
+  /// Who is missing for that, by topic; from the executor.
+  [[nodiscard]] std::string missing() const { return barrier_.missing(); }
   /// Called once on the executor when the service becomes ready.
   void onReady(std::function<void()> handler) { on_ready_ = std::move(handler); }
 
@@ -140,6 +147,7 @@ class Service {
   dds::Writer<msg::ServiceStatus>* status_ = nullptr;
   dds::Writer<msg::Event>* events_ = nullptr;
   dds::Writer<msg::ServiceManifest>* manifest_ = nullptr;
+  std::vector<dds::RawWriter*> last_words_;
   struct Rewinding {
     std::function<bool(std::uint64_t)> is_quiet;
     std::function<void()> forget;
@@ -148,6 +156,7 @@ class Service {
   };
   Rewinding rewinding_;
   std::string told_missing_ = "?";  // what the status said last
+  std::function<void(const msg::SimStatus&)> on_sim_status_;
   std::function<void()> on_end_;
   std::function<void()> on_ready_;
   std::function<void()> on_signal_;

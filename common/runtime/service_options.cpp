@@ -35,10 +35,12 @@ bool parseServiceOptions(int argc, char** argv, const std::string& role, Service
   }
   if (role == kPlantName)
     app.add_flag("--paused", options.starts_paused, "wait for `sim resume` before the first step");
-  if (role == "recorder") {
+  if (role == kRecorderName) {
     app.add_option("--out", options.out, "file to write (MCAP)")->required();
     app.add_flag("--record-later", options.record_later, "wait for `record start` before the first sample is kept");
   }
+  if (role == kPlantName || role == kRecorderName)
+    app.add_flag("--supervised", options.supervised, "wait for the run's supervisor as well");
   if (!parseCommandLine(app, argc, argv)) return false;
   options.recording = !no_recording;
   return true;
@@ -54,9 +56,11 @@ std::vector<std::string> toArguments(const ServiceOptions& options) {
   if (!options.checkpoint.empty()) arguments.insert(arguments.end(), {"--checkpoint", options.checkpoint});
   for (std::string& argument : toArguments(options.scheduling)) arguments.push_back(std::move(argument));
   if (options.starts_paused && options.role == kPlantName) arguments.emplace_back("--paused");
+  if (options.supervised && (options.role == kPlantName || options.role == kRecorderName))
+    arguments.emplace_back("--supervised");
   if (!options.recording) arguments.emplace_back("--no-recording");
   if (options.role == "controller") arguments.insert(arguments.end(), {"--name", options.name, "--law", options.law});
-  if (options.role == "recorder") {
+  if (options.role == kRecorderName) {
     arguments.insert(arguments.end(), {"--out", options.out});
     if (options.record_later) arguments.emplace_back("--record-later");
   }
@@ -84,6 +88,11 @@ std::vector<std::string> controllerNames(const Scenario& scenario) {
 
 std::vector<std::string> withRecorder(std::vector<std::string> names, const Scenario& scenario) {
   if (scenario.recording.enabled) names.emplace_back(kRecorderName);
+  return names;
+}
+
+std::vector<std::string> withSupervisor(std::vector<std::string> names, const ServiceOptions& options) {
+  if (options.supervised) names.emplace_back(kSupervisorName);
   return names;
 }
 

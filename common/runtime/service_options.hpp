@@ -26,6 +26,7 @@ struct ServiceOptions {
   Scheduling scheduling;
   std::string checkpoint;      // file to start from instead of step 0; empty: none
   bool starts_paused = false;  // plant: waits for a request before its first step
+  bool supervised = false;     // plant, recorder: a supervisor takes part, who must hear how the run goes
 
   [[nodiscard]] dds::ParticipantOptions participant() const;
 };
@@ -44,9 +45,13 @@ struct ServiceOptions {
 /// `names` and, in a run that is recorded, the recorder: the readers of a topic that must be whole in the recording.
 [[nodiscard]] std::vector<std::string> withRecorder(std::vector<std::string> names, const Scenario& scenario);
 
+/// `names` and, in a run that has one, the supervisor: the readers of what its result is made of.
+[[nodiscard]] std::vector<std::string> withSupervisor(std::vector<std::string> names, const ServiceOptions& options);
+
 inline constexpr const char* kPlantName = "plant";
 inline constexpr const char* kEnvironmentName = "environment";
 inline constexpr const char* kTrajectoryName = "trajectory";
 inline constexpr const char* kRecorderName = "recorder";
+inline constexpr const char* kSupervisorName = "supervisor";
 
 }  // namespace baton

@@ -54,7 +54,7 @@ void launch(const CellTarget& target, const LaunchWish& wish, msg::LaunchAction 
   const msg::LaunchRequest request = requestFor(wish, action);
   const auto reply = client.ask<msg::LaunchRequest, msg::LaunchReply>(
       dds::topics::kLaunchRequest, request, dds::topics::kLaunchReply,
-      [&](const msg::LaunchReply& one) { return one.request_id() == request.request_id(); }, "supervisor");
+      [&](const msg::LaunchReply& one) { return one.request_id() == request.request_id(); }, kSupervisorName);
   if (!reply) throw UnavailableError("the run's supervisor did not answer; see `baton logs supervisor`");
   const bool starts = action == msg::LAUNCH_START;
   const bool is_done = reply->accepted() && standsBy(client, wish.name, starts);

@@ -33,19 +33,26 @@ Plant::Plant(Service& service)
       state_out_(service, dds::topics::kPlantState, servicesBut(kPlantName, scenario_)),
       again_out_(service.output(dds::topics::kPlantStateAgain)),
       reply_out_(service.output(dds::topics::kSimReply)),
-      status_out_(service.output(dds::topics::kSimStatus, servicesBut(kPlantName, scenario_))),
+      status_out_(service.output(dds::topics::kSimStatus,
+                                 withSupervisor(servicesBut(kPlantName, scenario_), service.options()))),
       // Nobody is required to take part in resets: a controller of somebody else may not. Who does waits for us.
       rewind_out_(service.output(dds::topics::kRewind)),
-      timing_out_(service.output(dds::topics::kTimingStatus)),
+      timing_out_(service.output(dds::topics::kTimingStatus, withSupervisor({}, service.options()))),
       plan_out_(service.output(dds::topics::kSwapPlan, withRecorder(controllerNames(scenario_), scenario_))),
-      outcome_out_(service.output(dds::topics::kSwapOutcome, withRecorder({}, scenario_))),
-      report_out_(service.output(dds::topics::kSwapReport, withRecorder({}, scenario_))),
-      baton_out_(service.output(dds::topics::kBatonStatus)),
+      outcome_out_(
+          service.output(dds::topics::kSwapOutcome, withSupervisor(withRecorder({}, scenario_), service.options()))),
+      report_out_(
+          service.output(dds::topics::kSwapReport, withSupervisor(withRecorder({}, scenario_), service.options()))),
+      baton_out_(service.output(dds::topics::kBatonStatus, withSupervisor({}, service.options()))),
       decision_out_(service.output(dds::topics::kDecision, withRecorder({}, scenario_))) {
   prepare(state_message_);
+  // Of these the supervisor makes the run's result.
+  for (dds::RawWriter* const writer : {&timing_out_.raw(), &baton_out_.raw(), &outcome_out_.raw(), &report_out_.raw()})
+    service.leavesAfter(*writer);
   scheduled_.reserve(scenario_.swaps.size() + kMaxScheduled);
   scheduleSwaps();
-  for (const std::string& name : servicesBut(kPlantName, scenario_)) waited_for_.insert(name);
+  for (std::string& name : withSupervisor(servicesBut(kPlantName, scenario_), service.options()))
+    waited_for_.insert(std::move(name));
   resumeFromCheckpoint();
 
   if (scenario_.hasEnvironment()) {
@@ -61,7 +68,7 @@ Plant::Plant(Service& service)
                   onControllerStatus(status, sample);
                 });
   service.input(
-      dds::topics::kServiceStatus, servicesBut(kPlantName, scenario_),
+      dds::topics::kServiceStatus, withSupervisor(servicesBut(kPlantName, scenario_), service.options()),
       [this](const msg::ServiceStatus& status, const dds::RawSample& sample) { onServiceStatus(status, sample); });
   service.input(dds::topics::kSimRequest, {},
                 [this](const msg::SimRequest& request, const dds::RawSample&) { onSimRequest(request); });

@@ -6,7 +6,7 @@ namespace baton {
 std::string Plant::namesWaitedFor() const {
   std::string names;
   for (const std::string& name : waited_for_) names += (names.empty() ? "" : ", ") + name;
-  return names;
+  return names.empty() ? service_.missing() : names;
 }
 
 void Plant::publishStatus() {

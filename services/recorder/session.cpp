@@ -35,7 +35,7 @@ RecordingSession::RecordingSession(Service& service, SampleQueue& queue, const T
       config_(service.scenario().recording),
       queue_(queue),
       topics_(topics),
-      status_out_(service.output(dds::topics::kRecorderStatus, {kPlantName})),
+      status_out_(service.output(dds::topics::kRecorderStatus, withSupervisor({kPlantName}, service.options()))),
       rewind_ack_out_(service.output(dds::topics::kRewindAck, {kPlantName})),
       reply_out_(service.output(dds::topics::kRecordReply)),
       origin_(originOf(service.options(), service.scenario())),

@@ -42,7 +42,7 @@ ExitCode supervise(int argc, char** argv) {
   if (info.run.empty()) info.run = newRunId();
   info.folder = runFolder(info.run).string();
   info.supervisor_pid = getpid();
-  setUpLog("supervisor");
+  setUpLog(kSupervisorName);
 
   Scenario scenario = loadScenario(info.scenario);
   scenario.recording.enabled = scenario.recording.enabled && !no_recording;
@@ -56,7 +56,7 @@ ExitCode supervise(int argc, char** argv) {
   keepExperiment(info, scenario);
 
   ServiceOptions options;
-  options.role = options.name = "supervisor";
+  options.role = options.name = kSupervisorName;
   options.scenario_file = keptScenario(info);
   options.robot_file = keptRobot(info);
   options.cell = info.cell;
@@ -66,6 +66,7 @@ ExitCode supervise(int argc, char** argv) {
   options.recording = scenario.recording.enabled;
   options.checkpoint = checkpoint;
   options.starts_paused = starts_paused;
+  options.supervised = true;
   options.record_later = record_later;
   options.scheduling = scheduling;
   Service service(options, std::move(scenario));

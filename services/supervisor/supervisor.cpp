@@ -42,21 +42,22 @@ Supervisor::Supervisor(Service& service, Deployment deployment)
   service.answersNoSteps();
   service.onSignal([this] { onSignal(); });
   service.onEnd([this] { runIsOver(); });
-  service.input(dds::topics::kSimStatus, {}, [this](const msg::SimStatus& status, const dds::RawSample& sample) {
-    if (!service_.participant().isSecondCopy(sample.writer)) onSimStatus(status);
-  });
-  service.input(dds::topics::kTimingStatus, {}, [this](const msg::TimingStatus& status, const dds::RawSample& sample) {
-    if (!service_.participant().isSecondCopy(sample.writer)) timing_ = status;
-  });
-  service.input(dds::topics::kBatonStatus, {}, [this](const msg::BatonStatus& status, const dds::RawSample& sample) {
-    if (!service_.participant().isSecondCopy(sample.writer)) baton_ = status;
-  });
-  service.input(dds::topics::kRecorderStatus, {},
+  service.onSimStatus([this](const msg::SimStatus& status) { onSimStatus(status); });
+  service.input(dds::topics::kTimingStatus, {kPlantName},
+                [this](const msg::TimingStatus& status, const dds::RawSample& sample) {
+                  if (!service_.participant().isSecondCopy(sample.writer)) timing_ = status;
+                });
+  service.input(dds::topics::kBatonStatus, {kPlantName},
+                [this](const msg::BatonStatus& status, const dds::RawSample& sample) {
+                  if (!service_.participant().isSecondCopy(sample.writer)) baton_ = status;
+                });
+  service.input(dds::topics::kRecorderStatus, withRecorder({}, scenario_),
                 [this](const msg::RecorderStatus& status, const dds::RawSample&) { recorder_ = status; });
-  service.input(dds::topics::kSwapOutcome, {}, [this](const msg::SwapOutcome& outcome, const dds::RawSample&) {
-    if (!outcome.dry_run()) swaps_.push_back(outcome);
-  });
-  service.input(dds::topics::kSwapReport, {},
+  service.input(dds::topics::kSwapOutcome, {kPlantName},
+                [this](const msg::SwapOutcome& outcome, const dds::RawSample&) {
+                  if (!outcome.dry_run()) swaps_.push_back(outcome);
+                });
+  service.input(dds::topics::kSwapReport, {kPlantName},
                 [this](const msg::SwapReport& report, const dds::RawSample&) { reports_.push_back(report); });
   service.input(dds::topics::kLaunchRequest, {},
                 [this](const msg::LaunchRequest& request, const dds::RawSample&) { onLaunchRequest(request); });

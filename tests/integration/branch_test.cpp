@@ -63,8 +63,8 @@ TEST_F(Branch, WithoutAChangeGivesTheBytesOfTheOriginal) {
     for (const char* name : {"impedance", "force"}) expectSame("joint_command", name, msg::JointCommand{});
     for (const char* name : {"tracking", "pd"}) expectSame("shadow_command", name, msg::JointCommand{});
     // A branch can be branched again.
-    EXPECT_EQ(bench.batonJson({"branch", made.file, "--at", "800", "--json"}).at("chain_hash"),
-              original.result.at("chain_hash"));
+    const nlohmann::json again = bench.batonJson({"branch", made.file, "--at", "800", "--json"});
+    EXPECT_EQ(again.at("chain_hash"), original.result.at("chain_hash")) << again;
   }
 }
 

@@ -23,7 +23,7 @@ TEST(CommandLine, OperatesALiveRun) {
     EXPECT_EQ(service.at("state"), "ready") << service;
     services.insert(service.at("name"));
   }
-  services.erase("supervisor");  // speaks like a service, but nobody waits for it
+  services.erase("supervisor");  // speaks like a service, but computes no step
   EXPECT_EQ(services, (std::set<std::string>{"plant", "environment", "trajectory", "recorder", "tracking", "joint",
                                              "impedance", "force"}));
 
