@@ -105,12 +105,13 @@ void Supervisor::judge(const msg::SwapOutcome& swap) {
 
 void Supervisor::startAll() {
   const Scenario& scenario = scenario_;
-  // The recorder first and the plant last: whoever has to listen is there before there is something to hear.
-  if (scenario.recording.enabled) start(kRecorderName, kRecorderName, "");
+  // Each waits for whom it needs, so any order does. But DDS sends a sample to its readers in the order in which it found
+  // them, and for the recorder no step waits.
   if (scenario.hasEnvironment()) start(kEnvironmentName, kEnvironmentName, "");
   start(kTrajectoryName, kTrajectoryName, "");
   for (const ControllerConfig& controller : scenario.controllers) start("controller", controller.name, controller.law);
   start(kPlantName, kPlantName, "");
+  if (scenario.recording.enabled) start(kRecorderName, kRecorderName, "");
   limitStart();
 }
 
