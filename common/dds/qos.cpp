@@ -39,7 +39,8 @@ void applyCommon(Profile profile, int depth, Qos& qos) {
   qos.resource_limits().max_samples = depth + 1;
   qos.resource_limits().max_instances = 1;
   qos.resource_limits().max_samples_per_instance = depth + 1;
-  // To begin with; a history grows. A reader's is emptied with every sample, and 64 in each would be 2 MB of a recorder.
+  // To begin with; a history grows. A reader's is emptied with every sample, and 64 in each would be 2 MB of a
+  // recorder.
   qos.resource_limits().allocated_samples = std::min(depth, 8);
   // Its default lets a reader that is killed abort the writer's process.
   qos.data_sharing().off();
