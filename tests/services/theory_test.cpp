@@ -243,7 +243,7 @@ const Experiment kHighGain{"fig14_high_gain", {{"duration_s: 5", "duration_s: 0.
 const Experiment kSaturated{"fig14_saturated", {{"duration_s: 5", "duration_s: 2"}}};
 const Experiment kAdaptive{"fig16_adaptive", {{"duration_s: 20", "duration_s: 0.5"}}};
 const Experiment kAdaptationOff{"fig16_adaptation_off", {{"duration_s: 20", "duration_s: 0.5"}}};
-const Experiment kTuned{"fig16_tuned", {{"duration_s: 20", "duration_s: 2"}}};
+const Experiment kTuned{"fig16_tuned", {{"duration_s: 20", "duration_s: 5"}}};
 const Experiment kFreeCompliance{"fig33_compliance_free", {{"duration_s: 10", "duration_s: 7"}}};
 const Experiment kThroughJump{"fig25_through_jump", {}};
 const Experiment kFalseRest{"fig19_from_2_0_zyz", {{"duration_s: 15", "duration_s: 13"}}};
@@ -294,7 +294,9 @@ std::vector<Case> cases() {
         mistaken(kHighGain, {"kp: 2000", "kp: 2000.000005"})}},
       {"settling",
        {kSaturated},
-       {jointsOffAtTheEnd(), longerAtTheLimit(), longerOnTheWay(), mistaken(kSaturated, {"kd: 90", "kd: 95"})}},
+       {jointsOffAtTheEnd(), longerAtTheLimit(), longerOnTheWay(), higherPeak(&Trace::q, 0, "overshoot of q1"),
+        higherPeak(&Trace::q, 1, "overshoot of q2"), higherPeak(&Trace::q, 2, "overshoot of q3"),
+        mistaken(kSaturated, {"kd: 90", "kd: 95"})}},
       {"second_order_error",
        {kInverseDynamics},
        {off(&Trace::q,
@@ -316,6 +318,10 @@ std::vector<Case> cases() {
       {"adaptation_effect",
        {kAdaptive, kAdaptationOff},
        {largerErrors(0, "rms error of q1"), largerErrors(1, "part of the rms error of q1")}},
+      {"compliance_force",
+       {kCompliance},
+       {higherPeak(&Trace::h_e, 2, "largest force on the way"),
+        mistaken(kCompliance, {"stiffness_N_per_m: 50", "stiffness_N_per_m: 50.1"})}},
       {"adaptation_learns",
        {kTuned},
        {largerErrors(0, "rms error of q1, first quarter"), mistaken(kTuned, {"k: 0.005", "k: 0.006"})}},

@@ -40,21 +40,29 @@ constexpr const char* kHead = R"(<!doctype html>
 constexpr const char* kIntroduction = R"(<h1>The report's figures, run again</h1>
 <p>Each figure below comes from a recording of the distributed system: plant, wall, trajectory and controller as
 processes of their own on DDS, in lockstep. <em>Our runs</em> says whether what was measured agrees with what theory
-predicts, number by number. Only where it does is the report's claim judged: it <em>holds</em> when all that it says
+predicts, number by number. Predictions are made without the recording and without the law's own code, from the
+scenario: in closed form; as a balance at rest, solved by Newton's iteration; or by integrating the continuous equation
+of arm, law and wall with steps of its own. The arm's B, C and g are the same functions on both sides; tests hold them
+against Newton-Euler and orocos-kdl. Only where it does is the report's claim judged: it <em>holds</em> when all that it says
 was measured so, <em>holds in part</em> when some of it was and the rest was not, and <em>is wrong</em> when none of
 it was.</p>
 )";
 
 constexpr const char* kSymbols =
     R"(<p>The arm has one revolute joint (q1, rad) and two prismatic ones (q2, q3, m); L is how far its third link is out.
-q_d, x_d: desired joint positions and tip pose; e = q_d - q; x~ = x_d - x. tau: joint torques and forces. B, n: the
-arm's inertia matrix, and its Coriolis, centrifugal and gravity terms C qd + g together. J_P, J_A: Jacobian of the
-tip's position, and of position and ZYZ angles. h_e: force and moment of the tip on the wall; f_d: the desired
-force; Ke: the wall's stiffness; z_r: where it stands. Kp, Kd, Ki: gains on error, velocity and integral; Md, Mt:
-masses that impedance and admittance control give the tip; x_F: the position that force control adds to x_d.
-<em>Held</em> and <em>late</em>, of a force: kept over a step, and kept from the step before.</p>
+A prime is a derivative by time, q' and q''; what is quoted from the report has its qd and qdd. q_d, x_d: desired joint positions and tip pose; e = q_d - q; x~ = x_d - x.
+q_r' = q_d' + lam e: the velocity that adaptive control wants; Th: its estimate of the dynamic parameters, Y: the matrix
+that makes torques of them. tau: joint torques and forces. B, n: the arm's inertia matrix, and its Coriolis, centrifugal
+and gravity terms C q' + g together. J_P, J_A: Jacobian of the tip's position, and of position and ZYZ angles (phi, theta,
+psi). h_e: force and moment of the tip on the wall, f_e its force; f_d: the desired force; Ke: the wall's stiffness; z_r:
+where it stands. Kp, Kd, Ki: gains on error, velocity and integral, in the units that make a torque (joint and operational
+PD, compliance), a force (impedance, admittance) or an acceleration (inverse dynamics) of them. Md, Mt: masses that
+impedance and admittance control give the tip; z, in admittance: how far the tip gives way. x_F: the position that force
+control asks for, alone in Figures 49 to 51, as an addition to x_d in 53 and 54; x_e: where the tip is.
+<em>Held</em>, <em>late</em> and <em>derivatives</em>, of a force: kept over a step; kept from the step before; told with
+its slopes over position and velocity, so that it follows the motion within the step.</p>
 <p>The report prints no masses and inertias; those used here are identified from the digits of B, g and tau that it
-does print. That these digits come out again proves nothing; motions, forces and steady states do. The tolerance of
+does print, with the double count in its B11 (below, "What the report has wrong"). That these digits come out again proves nothing; motions, forces and steady states do. The tolerance of
 a number at rest is 1e-4 of it, or 1e-6 where theory says zero; on the way it covers what the step of the run is
 known to cost.</p>
 )";
@@ -168,6 +176,10 @@ std::string standing(const Erratum& erratum, const std::vector<FigureResult>& re
 
 void writeErrata(std::ofstream& page, const std::vector<Erratum>& errata, const std::vector<FigureResult>& results) {
   page << "<h2 id='errata'>What the report has wrong</h2>\n"
+          "<p><em>Established</em>: both sides were run or measured in the figures named, and all their numbers agree. "
+          "<em>What is right agrees with theory</em>: what is printed cannot be run, what is right was. <em>No "
+          "figure</em>: "
+          "the evidence is a test, or reading.</p>\n"
           "<table><tr><th>where<th>printed<th>right<th>evidence<th>our runs\n";
   for (const Erratum& erratum : errata) {
     page << fmt::format("<tr><td>{}<td>{}<td>{}<td>{}<td>{}\n", escaped(erratum.where), escaped(erratum.printed),
@@ -199,7 +211,7 @@ void writePage(const std::filesystem::path& file, const std::vector<FigureResult
   std::ofstream page(file, std::ios::binary);
   page << kHead;
   page << kIntroduction << kSymbols;
-  page << fmt::format("<p>{} runs, {} of them as recorded before; {:.0f} s. Made by {}.</p>\n", facts.runs,
+  page << fmt::format("<p>{} runs, {} of them reused from before; {:.0f} s. Made by {}.</p>\n", facts.runs,
                       facts.reused, facts.elapsed_s, escaped(facts.build));
   writeSummary(page, results);
   const auto writeAll = [&](bool studies) {

@@ -111,7 +111,11 @@ std::vector<std::string> jointLabels(const Trace& trace, const std::string& symb
   std::vector<std::string> labels;
   for (std::size_t i = 0; i < trace.scenario.robot.joints.size(); ++i) {
     const bool turns = trace.scenario.robot.joints[i].kind == JointKind::kRevolute;
-    labels.push_back(fmt::format("{}_{{{}}} [{}]", symbol, i + 1, turns ? turning : sliding));
+    const std::string subscript = fmt::format("_{{{}}}", i + 1);
+    const std::size_t bar = symbol.rfind('|');  // of a size, |e_{1}|
+    const std::string whole =
+        bar == std::string::npos ? symbol + subscript : symbol.substr(0, bar) + subscript + symbol.substr(bar);
+    labels.push_back(fmt::format("{} [{}]", whole, turns ? turning : sliding));
   }
   return labels;
 }
@@ -271,7 +275,13 @@ std::string commandsFor(const std::string& title, const std::vector<Panel>& all,
   double largest_span = 0.0;
   for (const Panel& panel : all) largest_span = std::max(largest_span, spanOf(panel).size());
   commands << fmt::format("set multiplot layout {},1 title {} noenhanced\n", all.size(), quoted(title));
-  commands << "set grid lc rgb '#dddddd'\nset key outside right top vertical maxrows 40 samplen 2\nset lmargin 12\n";
+  commands << "set grid lc rgb '#dddddd'\nset key outside right top vertical maxrows 40 samplen 2\nset lmargin 14\n";
+  // All panels have the same width, so that one instant is in one place, and room above and below the curves.
+  std::size_t longest = 0;
+  for (const Panel& panel : all) {
+    for (const Curve& curve : panel.curves) longest = std::max(longest, curve.label.size());
+  }
+  commands << fmt::format("set rmargin {}\nset offsets 0, 0, graph 0.05, graph 0.05\n", longest + 6);
   writeMarks(commands, runs);
   for (std::size_t p = 0; p < all.size(); ++p) {
     commands << fmt::format("set ylabel {}\n", quoted(all[p].y_label)) << yRange(all[p], largest_span);

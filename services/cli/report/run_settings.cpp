@@ -8,6 +8,7 @@
 
 #include "control/law.hpp"
 #include "messages/parameters.hpp"
+#include "trajectory/trajectory.hpp"
 
 namespace baton {
 namespace {
@@ -25,10 +26,27 @@ std::string controllerText(const ControllerConfig& controller) {
   return text;
 }
 
+template <class Vector>
+std::string row(const Vector& values) {
+  return fmt::format("({:.6g})", fmt::join(values.data(), values.data() + values.size(), ", "));
+}
+
+std::string motionText(const Scenario& scenario) {
+  const Trajectory trajectory(scenario.robot, scenario.trajectory);
+  Reference goal;
+  const double end_s = static_cast<double>(scenario.end_step) * scenario.stepSeconds();
+  trajectory.evaluate(end_s, goal);
+  std::string text = "q from " + row(scenario.start_q);
+  if (goal.q.size() > 0) text += ", q_d in the end " + row(goal.q);
+  if (goal.has_task) text += ", x_d " + row(goal.X_WE.p);
+  if (goal.has_task && !goal.h_d.isZero(0.0)) text += ", f_d " + row(Vector3(goal.h_d.head<3>()));
+  return text + fmt::format(", {:g} s", end_s);
+}
+
 }  // namespace
 
 std::string settingsText(const Scenario& scenario) {
-  std::string text;
+  std::string text = motionText(scenario) + "; ";
   for (const ControllerConfig& controller : scenario.controllers) text += controllerText(controller) + "; ";
   text += fmt::format("step {:g} ms", scenario.stepSeconds() * 1e3);
   std::vector<double> limits;

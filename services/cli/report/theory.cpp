@@ -39,6 +39,7 @@ constexpr Entry kChecks[] = {
     {"angle_jump", theory::angleJump},
     {"spurious_equilibrium", theory::spuriousEquilibrium},
     {"task_balance", theory::taskBalance},
+    {"compliance_force", theory::complianceForce},
     {"impedance_balance", theory::impedanceBalance},
     {"printed_impedance_balance", theory::printedImpedanceBalance},
     {"unforced_impedance_balance", theory::unforcedImpedanceBalance},

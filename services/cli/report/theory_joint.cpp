@@ -24,29 +24,6 @@ Checks offsetsAtRest(const Trace& run, const Residual& residual) {
   return checks;
 }
 
-/// The motion of the arm under an effort that is a function of time and state, cut at the joints' limits.
-using Effort = std::function<JointVector(const Reference& reference, const JointVector& q, const JointVector& qd)>;
-Eigen::MatrixXd motionUnder(const Trace& run, const Effort& effort) {
-  constexpr int kSubsteps = 2;
-  const RobotModel& robot = run.scenario.robot;
-  const Trajectory trajectory(robot, run.scenario.trajectory);
-  const Eigen::Index n = robot.size();
-  const auto derivative = [&](double time_s, const Eigen::VectorXd& x) -> Eigen::VectorXd {
-    Reference reference;
-    trajectory.evaluate(time_s, reference);
-    const JointVector q = x.head(n), qd = x.tail(n);
-    JointVector tau = effort(reference, q, qd), qdd = JointVector::Constant(n, std::nan(""));
-    saturateEffort(robot, tau);
-    if (!forwardDynamics(robot, q, qd, tau, Vector6::Zero(), qdd)) qdd.setConstant(std::nan(""));
-    Eigen::VectorXd xd(2 * n);
-    xd << qd, qdd;
-    return xd;
-  };
-  Eigen::VectorXd start(2 * n);
-  start << run.scenario.start_q, run.scenario.start_qd;
-  return integrate(run, derivative, start, kSubsteps);
-}
-
 }  // namespace
 
 // Whatever cancels gravity leaves e = 0.
@@ -261,6 +238,19 @@ JointVector settlingTimes(const Trace& run, const Eigen::MatrixXd& q) {
   return times;
 }
 
+/// How far each joint goes beyond its goal, seen from its start.
+JointVector overshoot(const Trace& run, const Eigen::MatrixXd& q) {
+  const JointVector goal = goalOf(run).q;
+  JointVector beyond = JointVector::Zero(goal.size());
+  for (int i = 0; i < goal.size(); ++i) {
+    const double direction = goal(i) < run.scenario.start_q(i) ? -1.0 : 1.0;
+    Largest largest;
+    for (Eigen::Index k = 0; k <= restStep(run); ++k) largest.add(direction * (q(i, k) - goal(i)));
+    beyond(i) = largest;
+  }
+  return beyond;
+}
+
 }  // namespace
 
 // The same arm and law, with the efforts cut if there are limits, in continuous time: the arm settles in such a time,
@@ -289,12 +279,16 @@ Checks settling(const Inputs& in) {
     }
   }
   const JointVector settled = settlingTimes(run, motion), measured_settled = settlingTimes(run, run.q);
+  const JointVector beyond = overshoot(run, motion), measured_beyond = overshoot(run, run.q);
+  const JointVector fastest = motion.bottomRows(n).cwiseAbs().rowwise().maxCoeff();
   Checks checks = reachesGoal(in);
   for (int i = 0; i < n; ++i) {
     // Each time that the limit is reached or left may fall a step earlier or later, and it is felt a step late.
     const double allowed = 8.0 * dt_s;
     const std::string name = jointName(i);
     checks.push_back(within("time in which " + name + " settles", "s", settled(i), measured_settled(i), allowed));
+    checks.push_back(
+        within("overshoot of " + name, jointUnit(robot, i), beyond(i), measured_beyond(i), fastest(i) * allowed));
     if (std::isfinite(robot.joints[static_cast<std::size_t>(i)].effort_limit))
       checks.push_back(within("time of " + name + " at its limit", "s", predicted(i), measured(i), allowed));
   }

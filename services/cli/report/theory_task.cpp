@@ -184,4 +184,32 @@ Checks taskBalance(const Inputs& in) {
   return checks;
 }
 
+// tau = g + J_A^T (Kp x~ - Kd J_A qd) in continuous time: the largest force on the way, beside the one at rest.
+Checks complianceForce(const Inputs& in) {
+  const Trace& run = in.run;
+  expectLaw(run, {"compliance"});
+  const RobotModel& robot = run.scenario.robot;
+  const Vector6 kp = gain<Vector6>(run, "kp"), kd = gain<Vector6>(run, "kd");
+  const Eigen::MatrixXd motion =
+      motionUnder(run, [&](const Reference& wanted, const JointVector& q, const JointVector& qd) -> JointVector {
+        const Eigen::MatrixXd J_A = zyzTaskJacobian(wanted, robot, q);
+        return gravity(robot, q) +
+               J_A.transpose() * (kp.cwiseProduct(zyzTaskError(wanted, robot, q)) - kd.cwiseProduct(Vector6(J_A * qd)));
+      });
+  const int n = robot.size();
+  Largest predicted, measured, travel_in_contact;
+  for (Eigen::Index k = 0; k <= restStep(run); ++k) {
+    const JointVector q = motion.col(k).head(n);
+    const double force = wallForce(run.scenario, tipPose(robot, q).p).norm();
+    predicted.add(force);
+    measured.add(run.h_e.col(k).head<3>().norm());
+    if (force > 0.0)
+      travel_in_contact.add((positionJacobian(robot, q) * motion.col(k).tail(n)).norm() * run.scenario.stepSeconds());
+  }
+  double Ke = 0.0;
+  for (const PlaneSpec& wall : run.scenario.walls) Ke += wall.stiffness_N_per_m;
+  // A torque held over a step acts half a step late: so much further the tip may have come.
+  return {within("largest force on the way", "N", predicted, measured, Ke * travel_in_contact / 2.0)};
+}
+
 }  // namespace baton::theory

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "robot/dynamics.hpp"
 #include "robot/kinematics.hpp"
+#include "robot/simulation.hpp"
 
 namespace baton::theory {
 namespace {
@@ -141,6 +142,29 @@ Eigen::MatrixXd integrate(const Trace& trace, const Derivative& derivative, cons
     states.col(k) = x;
   }
   return states;
+}
+
+Eigen::MatrixXd motionUnder(const Trace& run, const Effort& effort) {
+  constexpr int kSubsteps = 2;
+  const RobotModel& robot = run.scenario.robot;
+  const Trajectory trajectory(robot, run.scenario.trajectory);
+  const Eigen::Index n = robot.size();
+  const auto derivative = [&](double time_s, const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    Reference reference;
+    trajectory.evaluate(time_s, reference);
+    const JointVector q = x.head(n), qd = x.tail(n);
+    JointVector tau = effort(reference, q, qd), qdd = JointVector::Constant(n, std::nan(""));
+    saturateEffort(robot, tau);
+    Vector6 h_e = Vector6::Zero();
+    if (run.scenario.hasEnvironment()) h_e.head<3>() = wallForce(run.scenario, tipPose(robot, q).p);
+    if (!forwardDynamics(robot, q, qd, tau, h_e, qdd)) qdd.setConstant(std::nan(""));
+    Eigen::VectorXd xd(2 * n);
+    xd << qd, qdd;
+    return xd;
+  };
+  Eigen::VectorXd start(2 * n);
+  start << run.scenario.start_q, run.scenario.start_qd;
+  return integrate(run, derivative, start, kSubsteps);
 }
 
 FreeResponse freeResponse(double m, double d, double k, const FreeResponse& start, double time_s) {

@@ -58,6 +58,11 @@ using Derivative = std::function<Eigen::VectorXd(double time_s, const Eigen::Vec
 [[nodiscard]] Eigen::MatrixXd integrate(const Trace& trace, const Derivative& derivative, const Eigen::VectorXd& start,
                                         int substeps);
 
+/// The motion of the arm under an effort that is a function of time and state, cut at the joints' limits, in continuous
+/// time; the walls of the scenario push back. q and qd at every step, 2n x steps.
+using Effort = std::function<JointVector(const Reference& reference, const JointVector& q, const JointVector& qd)>;
+[[nodiscard]] Eigen::MatrixXd motionUnder(const Trace& run, const Effort& effort);
+
 /// m e'' + d e' + k e = 0 from e(0), e'(0), in closed form.
 struct FreeResponse {
   double e = 0.0;
@@ -124,6 +129,7 @@ using Checks = std::vector<Check>;
 [[nodiscard]] Checks angleJump(const Inputs& in);
 [[nodiscard]] Checks spuriousEquilibrium(const Inputs& in);
 [[nodiscard]] Checks taskBalance(const Inputs& in);
+[[nodiscard]] Checks complianceForce(const Inputs& in);
 
 // theory_force.cpp
 [[nodiscard]] Checks impedanceBalance(const Inputs& in);
