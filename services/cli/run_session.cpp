@@ -67,10 +67,12 @@ pid_t launch(const fs::path& program, const std::vector<std::string>& arguments,
   const int log = open(log_file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (log < 0) throw UnavailableError("cannot write " + log_file + ": " + std::strerror(errno));
   const pid_t parent = getpid();
+  // From before the fork, or one of ours could still take a signal that is meant for the program; until that is able to
+  // end in order, since it inherits this over exec.
+  const HeldSignals held;
   const pid_t pid = fork();
   if (pid == 0) {
     setsid();
-    const HeldSignals held;  // until the program is able to end in order; it inherits this over exec
     if (attached) {
       prctl(PR_SET_PDEATHSIG, SIGTERM);
       if (getppid() != parent) _exit(127);  // it died before we asked to be told
