@@ -145,7 +145,7 @@ class Batch {
   /// The first Ctrl-C ends the runs in order, the second at once.
   void awaitSignal() {
     signals_.async_wait([this](const boost::system::error_code& error, int) {
-      if (error) return;
+      if (error || running_ == 0) return;  // what is on its way already cannot be cancelled
       for (const Job& job : jobs_) {
         if (job.is_running) job.child->signal(was_interrupted_ ? SIGKILL : SIGTERM);
       }
@@ -157,7 +157,7 @@ class Batch {
   void tick() {
     timer_.expires_after(std::chrono::milliseconds(200));
     timer_.async_wait([this](const boost::system::error_code& error) {
-      if (error) return;
+      if (error || running_ == 0) return;
       if (is_terminal_) std::fprintf(stderr, "\r\033[K%s", progress().c_str());
       tick();
     });
