@@ -69,7 +69,8 @@ void Certificate::add(const Stream& stream, RecordedStream recorded) {
 }
 
 std::string Certificate::summary() const {
-  if (!isComplete()) return "incomplete: " + problems_.front();
+  const std::string hint = unmatched_.empty() ? "" : fmt::format("; no topic matches {}", fmt::join(unmatched_, ", "));
+  if (!isComplete()) return "incomplete: " + problems_.front() + hint;
   std::vector<std::string> but;
   for (const Hole& hole : holes_) {
     if (but.size() == 3) break;
@@ -82,7 +83,7 @@ std::string Certificate::summary() const {
   std::string text = "complete";
   if (!ending_.reason.empty()) text += ", " + ending_.reason;
   if (!but.empty()) text += fmt::format(" but for what was left out on purpose: {}", fmt::join(but, ", "));
-  return text;
+  return text + hint;
 }
 
 std::string Certificate::text() const {
@@ -113,6 +114,7 @@ std::string Certificate::text() const {
                      {"parts", parts_},
                      {"first_part", first_part_},
                      {"left_out", ledger_.leftOut()},
+                     {"unmatched", unmatched_},
                      {"holes", holes},
                      {"gaps", gaps},
                      {"streams", rows_}});

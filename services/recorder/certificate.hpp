@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "stream.hpp"
@@ -65,6 +66,8 @@ class Certificate {
     first_part_ = first;
   }
   void setSteps(std::uint64_t from_step, std::uint64_t to_step);
+  /// Patterns of the scenario's choice of topics that no topic matched.
+  void setUnmatched(std::vector<std::string> patterns) { unmatched_ = std::move(patterns); }
   /// What is the matter beyond what the ledger knows.
   void addProblem(const std::string& problem) { problems_.push_back(problem); }
 
@@ -81,6 +84,7 @@ class Certificate {
   std::vector<std::string> problems_;
   nlohmann::ordered_json rows_ = nlohmann::ordered_json::array();
   std::vector<Hole> holes_;
+  std::vector<std::string> unmatched_;
   std::vector<std::string> parts_;
   unsigned first_part_ = 0;
   std::uint64_t from_step_ = 0;

@@ -89,7 +89,7 @@ void TopicReaders::noteWriter(const dds::DiscoveredWriter& writer) {
                             {"type", writer.type},
                             {"qos", qosYaml(writer)},
                             {"qos_policies", writer.qos_text}};
-  if (!selection_.isRecorded(writer.topic)) left_out_.insert(writer.topic);
+  found_.insert(writer.topic);
 }
 
 void TopicReaders::writerFound(const dds::DiscoveredWriter& writer) {
@@ -163,7 +163,16 @@ TopicReaders::Writer TopicReaders::of(std::uint32_t topic, const dds::Guid& writ
 
 std::vector<std::string> TopicReaders::leftOut() const {
   const std::lock_guard lock(facts_mutex_);
-  return {left_out_.begin(), left_out_.end()};
+  std::vector<std::string> result;
+  for (const std::string& topic : found_) {
+    if (!selection_.isRecorded(topic)) result.push_back(topic);
+  }
+  return result;
+}
+
+std::vector<std::string> TopicReaders::unmatched() const {
+  const std::lock_guard lock(facts_mutex_);
+  return selection_.unmatched(found_);
 }
 
 std::vector<std::string> TopicReaders::unreadable() const {

@@ -42,8 +42,10 @@ class TopicReaders {
   };
   /// Who is behind a sample; any thread.
   [[nodiscard]] Writer of(std::uint32_t topic, const dds::Guid& writer) const;
-  /// What has been left out so far, by name; and writers that could not be read, in a sentence each. Any thread.
+  /// What has been left out so far, by name; patterns of the selection that nothing has matched so far; and writers
+  /// that could not be read, in a sentence each. Any thread.
   [[nodiscard]] std::vector<std::string> leftOut() const;
+  [[nodiscard]] std::vector<std::string> unmatched() const;
   [[nodiscard]] std::vector<std::string> unreadable() const;
 
  private:
@@ -70,7 +72,7 @@ class TopicReaders {
   // Never held while DDS is asked for something: discovery takes it with DDS's own locks held.
   mutable std::mutex facts_mutex_;
   std::map<dds::Guid, mcap::StringMap> metadata_;  // noted when it is found: who asks something leaves soon
-  std::set<std::string> left_out_;
+  std::set<std::string> found_;                    // topics, recorded or not
   std::set<std::string> unreadable_;
 
   // A reader hears writers of a stronger QoS as well: of two on a topic, each takes its own.

@@ -76,6 +76,7 @@ std::string RecordingSession::close(Recording& recording, const Ending& ending, 
   for (const std::string& topic : topics_.leftOut()) ledger_.leaveOut(topic);
   for (const std::string& what : topics_.unreadable()) ledger_.cannotRecord(what);
   Certificate certificate(ledger_, ending);
+  certificate.setUnmatched(topics_.unmatched());
   for (const auto& [key, stream] : streams_) {
     if (stream.is_recorded && !recording.holds(stream)) certificate.add(stream, {});
   }
@@ -86,6 +87,9 @@ std::string RecordingSession::close(Recording& recording, const Ending& ending, 
   spdlog::info("closed path={} parts={} messages={} bytes={} {}", recording.path().string(), recording.part() + 1,
                recording.messages(), recording.bytes(), certificate.summary());
   for (const std::string& problem : certificate.problems()) spdlog::warn("incomplete: {}", problem);
+  for (const std::string& pattern : topics_.unmatched()) {
+    spdlog::warn("recording: topics or except: expected a pattern that matches a topic, found {}", pattern);
+  }
   return certificate.summary();
 }
 

@@ -5,11 +5,29 @@
 #include <algorithm>
 
 namespace baton {
+namespace {
+
+bool isMatch(const std::string& pattern, const std::string& topic) {
+  return fnmatch(pattern.c_str(), topic.c_str(), 0) == 0;
+}
+
+}  // namespace
 
 bool TopicSelection::isRecorded(const std::string& topic) const {
-  const auto matches = [&](const std::string& pattern) { return fnmatch(pattern.c_str(), topic.c_str(), 0) == 0; };
+  const auto matches = [&](const std::string& pattern) { return isMatch(pattern, topic); };
   return (topics.empty() || std::any_of(topics.begin(), topics.end(), matches)) &&
          std::none_of(except.begin(), except.end(), matches);
+}
+
+std::vector<std::string> TopicSelection::unmatched(const std::set<std::string>& found) const {
+  std::vector<std::string> result;
+  for (const auto* patterns : {&topics, &except}) {
+    for (const std::string& pattern : *patterns) {
+      const auto matches = [&](const std::string& topic) { return isMatch(pattern, topic); };
+      if (std::none_of(found.begin(), found.end(), matches)) result.push_back(pattern);
+    }
+  }
+  return result;
 }
 
 }  // namespace baton

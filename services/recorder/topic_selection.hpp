@@ -2,6 +2,7 @@
 /// `except` takes away. Patterns are those of a shell: * ? [a-z].
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ struct TopicSelection {
   std::vector<std::string> except;
 
   [[nodiscard]] bool isRecorded(const std::string& topic) const;
+  /// The patterns, of both kinds, that none of these topics matches: each may be a slip of the pen.
+  [[nodiscard]] std::vector<std::string> unmatched(const std::set<std::string>& found) const;
 };
 
 }  // namespace baton

@@ -120,6 +120,18 @@ TEST(Record, OnlyTheTopicsThatAreNamedAreRecorded) {
   expectVerified(run.bench, {run.file});
 }
 
+TEST(Record, APatternThatNoTopicMatchesIsTold) {
+  const RecordedRun run("topics: [plant_state, contcat], except: ['*_stats']");
+  ASSERT_EQ(run.result.at("exit_code"), 0) << run.result;
+  EXPECT_NE(run.result.at("recording").at("summary").get<std::string>().find("no topic matches contcat, *_stats"),
+            std::string::npos)
+      << run.result;
+  EXPECT_EQ(certificateOf(run.file).at("unmatched"), Json::parse(R"(["contcat", "*_stats"])"));
+  const Finished logs = run.bench.baton({"logs", "recorder"});
+  EXPECT_NE(logs.out.find("expected a pattern that matches a topic, found contcat"), std::string::npos) << logs.out;
+  expectVerified(run.bench, {run.file});
+}
+
 TEST(Record, PartsFollowEachOtherAndTheLastOneVouchesForAll) {
   const RecordedRun run("compression: none, chunk_kB: 32, split_MB: 0.4");
   ASSERT_EQ(run.result.at("exit_code"), 0) << run.result;

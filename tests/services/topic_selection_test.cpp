@@ -32,5 +32,12 @@ TEST(TopicSelection, APatternReachesOverSlashes) {
   EXPECT_FALSE((TopicSelection{{}, {"rt/*"}}.isRecorded("rt/turtle/pose")));
 }
 
+TEST(TopicSelection, TellsWhichPatternsMatchNothing) {
+  const TopicSelection selection{{"plant_*", "contcat"}, {"*_status", "refrence"}};
+  EXPECT_EQ(selection.unmatched({"plant_state", "contact", "sim_status"}),
+            (std::vector<std::string>{"contcat", "refrence"}));
+  EXPECT_TRUE(TopicSelection{}.unmatched({"contact"}).empty());
+}
+
 }  // namespace
 }  // namespace baton
