@@ -17,6 +17,10 @@ std::vector<std::string> topicNames(const Reader& reader) {
   return {names.begin(), names.end()};
 }
 
+double durationOf(const Reader& reader) {
+  return static_cast<double>(reader.statistics().end_time_ns - reader.statistics().start_time_ns) * 1e-9;
+}
+
 std::uint64_t logTimeAt(const Reader& reader, double seconds) {
   constexpr double kLongest_ns = 9e18;  // fits into 64 bits
   const std::uint64_t start_ns = reader.statistics().start_time_ns;

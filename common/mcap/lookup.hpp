@@ -14,6 +14,9 @@ namespace baton::mcap {
 /// All topics of a recording, sorted.
 [[nodiscard]] std::vector<std::string> topicNames(const Reader& reader);
 
+/// From its first message to its last, in s of log time.
+[[nodiscard]] double durationOf(const Reader& reader);
+
 /// A log time from the recording's first message on; the latest there is, when that is beyond it.
 /// @param seconds  not negative.
 [[nodiscard]] std::uint64_t logTimeAt(const Reader& reader, double seconds);

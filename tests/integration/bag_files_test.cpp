@@ -147,6 +147,16 @@ TEST_F(BagFiles, APartIsCutOutAndSaysSo) {
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_NE(unknown.err.find("did you mean 'plant_state'"), std::string::npos) << unknown.err;
   EXPECT_EQ(bench.baton({"bag", "cut", file, path("none.mcap"), "--from", "2", "--to", "1"}).exit_code, 2);
+  const Finished beyond = bench.baton({"bag", "cut", file, path("none.mcap"), "--from", "1000"});
+  EXPECT_EQ(beyond.exit_code, 2);
+  EXPECT_NE(beyond.err.find("--from: expected a time in " + file + ", which ends"), std::string::npos) << beyond.err;
+  // A topic that is not in the chosen time.
+  fs::copy_file(file, path("kept.mcap"));
+  const Finished nothing = bench.baton({"bag", "cut", file, path("kept.mcap"), "--overwrite", "--topics", "swap_outcome",
+                                        "--to", "0"});
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_NE(nothing.err.find("expected messages in these topics and times"), std::string::npos) << nothing.err;
+  EXPECT_EQ(fs::file_size(path("kept.mcap")), fs::file_size(file)) << "what was there stays";
   EXPECT_FALSE(fs::exists(path("none.mcap")));
 }
 

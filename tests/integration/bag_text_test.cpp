@@ -73,6 +73,9 @@ TEST(BagCat, TakesTopicsTimesAndALimit) {
   EXPECT_TRUE(nlohmann::json::parse(raw.out).contains("data")) << raw.out;
   EXPECT_EQ(bench.baton({"bag", "cat", file, "--topics", "plan"}).exit_code, 2);
   EXPECT_EQ(bench.baton({"bag", "cat", file, "--from", "2", "--to", "1"}).exit_code, 2);
+  const Finished beyond = bench.baton({"bag", "cat", file, "--from", "2"});
+  EXPECT_EQ(beyond.exit_code, 2);
+  EXPECT_NE(beyond.err.find("which ends 0.009000 s behind its first message, found 2"), std::string::npos) << beyond.err;
   EXPECT_EQ(bench.baton({"bag", "cat", file, "--limit", "0"}).exit_code, 2);
   EXPECT_EQ(bench.baton({"bag", "cat", bench.write("no.mcap", "nothing")}).exit_code, 2);
   EXPECT_EQ(bench.baton({"bag", "cat", (bench.folder() / "none.mcap").string()}).exit_code, 3);

@@ -4,16 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "bag/copy_target.hpp"
+#include "bag/selection.hpp"
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
-#include "control/nearest_name.hpp"
 #include "mcap/lookup.hpp"
-#include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
 
@@ -21,44 +18,37 @@ namespace baton {
 namespace {
 
 struct CutRequest {
-  std::string in;
+  Selection what;
   CopyTarget out;
-  std::optional<double> from_s;  // of log time since the first message
-  std::optional<double> to_s;
-  std::vector<std::string> topics;  // empty: all
   bool json = false;
 };
 
-mcap::MessageFilter filterOf(const CutRequest& request, const mcap::Reader& reader) {
-  if (!request.from_s && !request.to_s && request.topics.empty()) {
+mcap::MessageFilter filterFor(const CutRequest& request, const mcap::Reader& reader) {
+  const Selection& what = request.what;
+  if (!what.from_s && !what.to_s && what.topics.empty()) {
     throw UsageError("expected what to keep: --from, --to or --topics");
   }
-  const std::vector<std::string> known = mcap::topicNames(reader);
-  for (const std::string& topic : request.topics) {
-    if (!std::ranges::binary_search(known, topic)) throw UsageError(unknownName("topic", topic, known));
-  }
-  mcap::MessageFilter filter{.topics = request.topics, .order = mcap::MessageFilter::Order::kFile};
-  if (request.from_s) filter.start_time_ns = mcap::logTimeAt(reader, *request.from_s);
-  if (request.to_s) filter.end_time_ns = mcap::logTimeAt(reader, *request.to_s);
-  if (filter.end_time_ns < filter.start_time_ns) throw UsageError("--to: expected a time that is not before --from");
+  mcap::MessageFilter filter = filterOf(what, reader);
+  filter.order = mcap::MessageFilter::Order::kFile;
   return filter;
 }
 
 /// What a copy that is not the whole says of itself.
-mcap::StringMap cutMetadata(const CutRequest& request, std::uint64_t kept, std::uint64_t of) {
-  mcap::StringMap values{{"file", request.in},
+mcap::StringMap cutMetadata(const Selection& what, std::uint64_t kept, std::uint64_t of) {
+  mcap::StringMap values{{"file", what.file},
                          {"messages", std::to_string(kept)},
                          {"left_out", std::to_string(of - kept)},
-                         {"topics", fmt::format("{}", fmt::join(request.topics, ","))}};
-  if (request.from_s) values["from_s"] = fmt::format("{}", *request.from_s);
-  if (request.to_s) values["to_s"] = fmt::format("{}", *request.to_s);
+                         {"topics", fmt::format("{}", fmt::join(what.topics, ","))}};
+  if (what.from_s) values["from_s"] = fmt::format("{}", *what.from_s);
+  if (what.to_s) values["to_s"] = fmt::format("{}", *what.to_s);
   return values;
 }
 
 ExitCode cut(const CutRequest& request) {
-  const auto reader = openForCopy(request.in);
-  const mcap::MessageFilter filter = filterOf(request, *reader);
-  mcap::WriterOptions options = optionsFor(request.out, {request.in});
+  const std::string& in = request.what.file;
+  const auto reader = openForCopy(in);
+  const mcap::MessageFilter filter = filterFor(request, *reader);
+  mcap::WriterOptions options = optionsFor(request.out, {in});
   options.profile = reader->info().header.profile;
   mcap::Copier copy(request.out.file, options);
   for (const mcap::Metadata& one : reader->metadata()) copy.metadata(withoutClaim(one.name), one.values);
@@ -78,13 +68,16 @@ ExitCode cut(const CutRequest& request) {
     });
   }
   const std::uint64_t kept = copy.messages(), of = reader->statistics().message_count;
-  copy.metadata("baton.cut", cutMetadata(request, kept, of));
+  if (kept == 0) {
+    throw UsageError(fmt::format("expected messages in these topics and times, found none: {} has {} in {:.6f} s", in,
+                                 of, mcap::durationOf(*reader)));
+  }
+  copy.metadata("baton.cut", cutMetadata(request.what, kept, of));
   copy.finish();
   if (request.json) {
-    std::puts(
-        toText({{"file", request.in}, {"out", request.out.file}, {"messages", kept}, {"left_out", of - kept}}).c_str());
+    std::puts(toText({{"file", in}, {"out", request.out.file}, {"messages", kept}, {"left_out", of - kept}}).c_str());
   } else {
-    fmt::print("cut         {}: {} of {} messages of {}\n", request.out.file, kept, of, request.in);
+    fmt::print("cut         {}: {} of {} messages of {}\n", request.out.file, kept, of, in);
   }
   return ExitCode::kOk;
 }
@@ -97,16 +90,11 @@ void addBagCut(CLI::App& bag, ExitCode& exit_code) {
   command->footer(
       "Metadata and attachments are kept. The metadata record baton.cut says what was left out; such a file does not\n"
       "claim to be complete, the certificate of the whole is kept under the name original_...\n"
-      "Exit codes: 0 done; 1 OUT could not be written; 2 wrong input, damaged or not a recording (`bag recover` makes "
-      "a\n"
-      "sound one); 3 IN cannot be opened, or OUT is there already or cannot be made.");
-  command->add_option("in", request->in, "recording (MCAP)")->required();
+      "Exit codes: 0 done; 1 OUT could not be written; 2 wrong input, nothing to keep, damaged or not a recording\n"
+      "(`bag recover` makes a sound one); 3 FILE cannot be opened, or OUT is there already or cannot be made.");
+  addTopicSelection(*command, request->what);
   addTarget(*command, request->out);
-  command->add_option("--from", request->from_s, "start here, in s of log time from the recording's first message")
-      ->check(notNegative());
-  command->add_option("--to", request->to_s, "end here, likewise; a message at that time is kept")
-      ->check(notNegative());
-  command->add_option("--topics", request->topics, "only these topics: a,b,c")->delimiter(',')->allow_extra_args(false);
+  addTimeSelection(*command, request->what);
   command->add_flag("--json", request->json, "as a JSON object");
   command->callback([request, &exit_code] { exit_code = cut(*request); });
 }

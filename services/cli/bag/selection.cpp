@@ -1,5 +1,7 @@
 #include "bag/selection.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -23,7 +25,25 @@ void addTopicSelection(CLI::App& command, Selection& selection) {
 void addTimeSelection(CLI::App& command, Selection& selection) {
   command.add_option("--from", selection.from_s, "start here, in s of log time from the recording's first message")
       ->check(notNegative());
-  command.add_option("--to", selection.to_s, "end here, likewise")->check(notNegative());
+  command.add_option("--to", selection.to_s, "end here, likewise; a message at that time is taken")
+      ->check(notNegative());
+}
+
+mcap::MessageFilter filterOf(const Selection& selection, const mcap::Reader& reader) {
+  const std::vector<std::string> known = mcap::topicNames(reader);
+  for (const std::string& topic : selection.topics) {
+    if (!std::ranges::binary_search(known, topic)) throw UsageError(unknownName("topic", topic, known));
+  }
+  mcap::MessageFilter filter{.topics = selection.topics};
+  if (selection.from_s) filter.start_time_ns = mcap::logTimeAt(reader, *selection.from_s);
+  if (selection.to_s) filter.end_time_ns = mcap::logTimeAt(reader, *selection.to_s);
+  if (filter.end_time_ns < filter.start_time_ns) throw UsageError("--to: expected a time that is not before --from");
+  if (filter.start_time_ns > reader.statistics().end_time_ns) {
+    throw UsageError(
+        fmt::format("--from: expected a time in {}, which ends {:.6f} s behind its first message, found {}",
+                    selection.file, mcap::durationOf(reader), *selection.from_s));
+  }
+  return filter;
 }
 
 SelectedMessages::SelectedMessages(const Selection& selection)
@@ -34,14 +54,7 @@ SelectedMessages::SelectedMessages(const Selection& selection)
                          " cannot be read and are left out: " + damage.reason);
               }}) {
   if (!reader_.info().is_complete) complain("it was cut: " + reader_.info().problem);
-  const std::vector<std::string> known = mcap::topicNames(reader_);
-  for (const std::string& topic : selection.topics) {
-    if (!std::ranges::binary_search(known, topic)) throw UsageError(unknownName("topic", topic, known));
-  }
-  filter_.topics = selection.topics;
-  if (selection.from_s) filter_.start_time_ns = mcap::logTimeAt(reader_, *selection.from_s);
-  if (selection.to_s) filter_.end_time_ns = mcap::logTimeAt(reader_, *selection.to_s);
-  if (filter_.end_time_ns < filter_.start_time_ns) throw UsageError("--to: expected a time that is not before --from");
+  filter_ = filterOf(selection, reader_);
 }
 
 void SelectedMessages::complain(const std::string& problem) {

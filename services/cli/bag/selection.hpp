@@ -1,4 +1,4 @@
-/// What `bag cat` and `bag export` take out of a recording: some topics, some of its time.
+/// What `bag cat`, `bag export` and `bag cut` take out of a recording: some topics, some of its time.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -26,10 +26,13 @@ void addTopicSelection(CLI::App& command, Selection& selection);
 /// --from and --to.
 void addTimeSelection(CLI::App& command, Selection& selection);
 
+/// Throws UsageError for a topic that the recording does not have, times in the wrong order, and those outside of it.
+[[nodiscard]] mcap::MessageFilter filterOf(const Selection& selection, const mcap::Reader& reader);
+
 /// The messages that were chosen. What cannot be read is left out and told on standard error.
 class SelectedMessages {
  public:
-  /// Throws what opening a recording throws, and UsageError for a topic it does not have or times in the wrong order.
+  /// Throws what opening a recording and filterOf() throw.
   explicit SelectedMessages(const Selection& selection);
 
   /// In order of log time. `use` returns false to end it early. Shows on the terminal how far it is, after `doing`,
