@@ -148,6 +148,10 @@ RecordedRun readRecordedRun(const fs::path& file) {
       .first_step = 0,
       .last_step = 0,
       .decisions = {}};
+  expectTopic(reader, dds::topics::kPlantState.name, file);
+  for (const char* topic : {dds::topics::kDecision.name, dds::topics::kSwapPlan.name, dds::topics::kRewind.name}) {
+    expectNotLeftOut(reader, topic, file);
+  }
   run.scenario =
       parseScenario(file.string() + "#scenario.yaml", run.scenario_text, file.string() + "#robot.yaml", run.robot_text);
   bool has_states = false;

@@ -156,7 +156,8 @@ void addWhatIfCommand(CLI::App& app) {
       "Compared with what the holder commanded; while the brake held, with what the joints felt.\n"
       "Exit codes: 0 done, whatever the difference; 2 no such law, value or controller, no contact for a law that "
       "uses\n"
-      "force, no recording of a run; 3 no such file, or one that cannot be written.");
+      "force, no recording of a run, or one without a topic that is needed; 3 no such file, or one that cannot be\n"
+      "written.");
   command->add_option("file", request->file, "recording (MCAP)")->required();
   command->add_option("--law", request->wish.law, "the law (see `baton laws`)");
   command->add_option("--as", request->wish.as,

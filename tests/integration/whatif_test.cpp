@@ -109,5 +109,34 @@ TEST(WhatIf, SaysWhatItNeeds) {
   EXPECT_TRUE(bench.batonJson({"whatif", file, "--law", "joint_inverse_dynamics", "--json"}).at("exact").get<bool>());
 }
 
+TEST(WhatIf, AndTheHashOfARunNameTheTopicThatARecordingIsWithout) {
+  const Bench bench;
+  const auto refusal = [&](const std::vector<std::string>& arguments) {
+    const Finished finished = bench.baton(arguments);
+    EXPECT_EQ(finished.exit_code, 2) << finished.out << finished.err;
+    return finished.err;
+  };
+  const std::string without = ", found a recording without it";
+  const std::string no_states = recorded(bench, shortContact("recording: {except: [plant_state]}\n"));
+  using Words = std::vector<std::string>;
+  for (const Words& arguments : {Words{"bag", "hash", no_states}, Words{"whatif", no_states, "--law", "joint_pd"},
+                                 Words{"whatif", no_states, "--as", "tracking"}, Words{"rerun", no_states}}) {
+    EXPECT_NE(refusal(arguments).find("expected the topic plant_state" + without), std::string::npos) << arguments[0];
+  }
+  fs::remove(no_states);
+  const std::string no_contact = recorded(bench, shortContact("recording: {except: [contact, swap_plan]}\n"));
+  EXPECT_NE(refusal({"bag", "hash", no_contact}).find("the topic contact" + without), std::string::npos);
+  EXPECT_NE(refusal({"whatif", no_contact, "--as", "tracking"}).find("the topic swap_plan" + without),
+            std::string::npos);
+  fs::remove(no_contact);
+  // A copy that took only some topics.
+  const std::string file = recorded(bench, shortContact()), cut = (bench.folder() / "cut.mcap").string();
+  ASSERT_EQ(bench.baton({"bag", "cut", file, cut, "--topics", "plant_state,contact,reference"}).exit_code, 0);
+  EXPECT_NE(refusal({"bag", "hash", cut}).find("the topic joint_command" + without), std::string::npos);
+  const Finished alone = bench.baton({"whatif", cut, "--law", "joint_pd"});
+  EXPECT_EQ(alone.exit_code, 0) << alone.err;
+  EXPECT_NE(alone.out.find("the recording is without the topic joint_command"), std::string::npos) << alone.out;
+}
+
 }  // namespace
 }  // namespace baton::test

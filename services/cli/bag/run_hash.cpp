@@ -34,6 +34,7 @@ std::optional<std::uint64_t> HashedRun::firstBroken() const {
 
 HashedRun hashRun(const std::filesystem::path& file) {
   const mcap::Reader reader(file);
+  expectTopic(reader, dds::topics::kPlantState.name, file);
   const std::uint64_t begin_ns = lastTakeBegin(reader);
   HashedRun run;
   forEachMessageOf(dds::topics::kPlantState, reader, begin_ns, [&](const msg::PlantState& state, const auto& view) {

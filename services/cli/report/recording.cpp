@@ -2,11 +2,33 @@
 
 #include <algorithm>
 #include <charconv>
+#include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "mcap/lookup.hpp"
 #include "runtime/recorded_messages.hpp"
 
 namespace baton {
+namespace {
+
+/// By the certificate, or by the copy that took only some topics.
+bool isLeftOut(const mcap::Reader& reader, const std::string& topic) {
+  if (!metadataValue(reader, "baton.cut", "topics").empty()) {
+    return std::ranges::count(mcap::topicNames(reader), topic) == 0;
+  }
+  auto text = attachmentText(reader, "certificate.json");
+  if (!text) text = attachmentText(reader, "original_certificate.json");
+  const nlohmann::json certificate = nlohmann::json::parse(text.value_or(""), nullptr, false);
+  const auto left_out = certificate.is_object() ? certificate.find("left_out") : certificate.end();
+  return left_out != certificate.end() && std::count(left_out->begin(), left_out->end(), nlohmann::json(topic)) > 0;
+}
+
+[[noreturn]] void missTopic(const std::string& topic, const std::filesystem::path& file) {
+  throw UsageError(file.string() + ": expected the topic " + topic + ", found a recording without it: the scenario's " +
+                   "recording.topics and recording.except, or `bag cut --topics`, have to let it through");
+}
+
+}  // namespace
 
 std::optional<std::string> attachmentText(const mcap::Reader& reader, const std::string& name) {
   for (const mcap::AttachmentIndex& index : reader.attachments()) {
@@ -26,6 +48,22 @@ Scenario recordedScenario(const mcap::Reader& reader, const std::filesystem::pat
   const std::string robot_text = neededAttachment(reader, "robot.yaml", file);
   return parseScenario(file.string() + "#scenario.yaml", neededAttachment(reader, "scenario.yaml", file),
                        file.string() + "#robot.yaml", robot_text);
+}
+
+bool hasTopic(const mcap::Reader& reader, const std::string& topic) {
+  const auto& counts = reader.statistics().channel_message_counts;
+  return std::ranges::any_of(reader.channels(), [&](const auto& entry) {
+    const auto count = counts.find(entry.first);
+    return entry.second.topic == topic && count != counts.end() && count->second > 0;
+  });
+}
+
+void expectTopic(const mcap::Reader& reader, const std::string& topic, const std::filesystem::path& file) {
+  if (!hasTopic(reader, topic)) missTopic(topic, file);
+}
+
+void expectNotLeftOut(const mcap::Reader& reader, const std::string& topic, const std::filesystem::path& file) {
+  if (!hasTopic(reader, topic) && isLeftOut(reader, topic)) missTopic(topic, file);
 }
 
 std::string metadataValue(const mcap::Reader& reader, const std::string& record, const std::string& key) {

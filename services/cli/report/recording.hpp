@@ -20,6 +20,15 @@ namespace baton {
 /// The scenario that the run began with. Throws UsageError when the file is not the recording of a run.
 [[nodiscard]] Scenario recordedScenario(const mcap::Reader& reader, const std::filesystem::path& file);
 
+/// Whether a message of the topic is in the recording.
+[[nodiscard]] bool hasTopic(const mcap::Reader& reader, const std::string& topic);
+
+/// Throws UsageError when the recording is without a topic that every run has.
+void expectTopic(const mcap::Reader& reader, const std::string& topic, const std::filesystem::path& file);
+
+/// The same of one on which a run need not say anything: it is missed when it was left out on purpose.
+void expectNotLeftOut(const mcap::Reader& reader, const std::string& topic, const std::filesystem::path& file);
+
 /// A value of a metadata record; empty when there is no such record or key.
 [[nodiscard]] std::string metadataValue(const mcap::Reader& reader, const std::string& record, const std::string& key);
 

@@ -21,6 +21,7 @@ struct Stretch {
 /// elsewhere may have any.
 Stretch statesIn(const mcap::Reader& reader, std::uint64_t begin_ns, std::int64_t step_ns,
                  const std::filesystem::path& file) {
+  expectTopic(reader, dds::topics::kPlantState.name, file);
   std::uint64_t count = 0, first = 0, last = 0;
   forEachMessageOf(dds::topics::kPlantState, reader, begin_ns, [&](const msg::PlantState& state, const auto&) {
     first = count == 0 ? state.step() : std::min(first, state.step());

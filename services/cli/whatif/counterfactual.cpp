@@ -143,12 +143,9 @@ Candidate candidateFor(const mcap::Reader& reader, const fs::path& file, const C
 }
 
 void expectContacts(const mcap::Reader& reader, const LawInfo& law, const fs::path& file) {
-  if (!law.uses_force) return;
-  for (const auto& [id, count] : reader.statistics().channel_message_counts) {
-    if (count > 0 && reader.channels().at(id).topic == dds::topics::kContact.name) return;
-  }
+  if (!law.uses_force || hasTopic(reader, dds::topics::kContact.name)) return;
   throw UsageError(file.string() + ": expected contact forces, which the law " + law.name +
-                   " uses, found none recorded: try a law that is blind to them (`baton laws`)");
+                   " uses, found no topic contact in the recording: try a law that is blind to them (`baton laws`)");
 }
 
 /// Whether a controller of the run waits for the contact; nothing when nobody is called so.
@@ -162,12 +159,15 @@ std::optional<bool> usesForce(const Scenario& scenario, const std::string& name)
 /// Takes a law through the steps.
 class Walk {
  public:
-  Walk(const Candidate& candidate, Counterfactual& made, const EffortSink& sink)
+  Walk(const mcap::Reader& reader, const Candidate& candidate, Counterfactual& made, const EffortSink& sink)
       : candidate_(candidate),
         made_(made),
         sink_(sink),
         law_(candidate.scenario, candidate.config(), candidate.first_step),
         effort_(JointVector::Zero(candidate.scenario.robot.size())) {
+    if (!hasTopic(reader, dds::topics::kJointCommand.name)) {
+      why_without_recorded_ = "the recording is without the topic joint_command";
+    }
     input_.dt_s = candidate.scenario.stepSeconds();
     if (!candidate.state) return;
     StateArchive archive = StateArchive::from(std::as_bytes(std::span(*candidate.state)));
@@ -188,7 +188,7 @@ class Walk {
     noteHolder(step);
     const std::optional<JointVector>* recorded = step.effort();
     const bool is_recorded = recorded != nullptr && recorded->has_value();
-    if (!is_recorded) made_.without_recorded.add(step.step);
+    if (!is_recorded) made_.without_recorded.add(step.step, 1, why_without_recorded_);
     if (!step.reference || (law_.info().uses_force && !step.contact)) return made_.without_inputs.add(step.step);
     if (!isAsTheHolderSawIt(step)) made_.with_other_inputs.add(step.step);
     if (!compute(step)) return;
@@ -242,6 +242,7 @@ class Walk {
   RunningLaw law_;
   LawInput input_;
   JointVector effort_;
+  std::string why_without_recorded_;
   std::uint64_t last_ = 0;
 };
 
@@ -264,6 +265,9 @@ Counterfactual counterfactual(const fs::path& file, const CounterfactualWish& wi
                               const std::function<void(double)>& progress) {
   const mcap::Reader reader(file);
   const Candidate candidate = candidateFor(reader, file, wish);
+  for (const char* topic : {dds::topics::kPlantState.name, dds::topics::kReference.name}) {
+    expectTopic(reader, topic, file);
+  }
   const ControllerConfig& config = candidate.config();
   expectContacts(reader, findLaw(config.law), file);
   Counterfactual made;
@@ -278,7 +282,7 @@ Counterfactual counterfactual(const fs::path& file, const CounterfactualWish& wi
   if (!reader.info().is_complete) made.cut = reader.info().problem;
   made.run = metadataValue(reader, "baton.run", "run");
 
-  Walk walk(candidate, made, sink);
+  Walk walk(reader, candidate, made, sink);
   forEachStep(reader, lastTakeBegin(reader), made.scenario.robot.size(), std::ref(walk), progress);
   if (made.steps == 0) throw UsageError(file.string() + ": expected the states of a run, found none");
   for (Gap* gap : {&made.without_inputs, &made.without_recorded}) gap->spare(walk.lastStep());
