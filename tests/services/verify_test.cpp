@@ -111,8 +111,28 @@ TEST_F(VerifyTest, APartThatIsMissingIsNamed) {
     some.erase(some.begin() + static_cast<std::ptrdiff_t>(left_out));
     const Verification found = verify(some);
     EXPECT_EQ(found.verdict(), Verdict::kIncomplete) << left_out;
-    const std::string words = left_out == 3 ? "no certificate" : "part " + std::to_string(left_out) + " is not among";
+    const std::string part = left_out == 3 ? "run_0003.mcap, in which it goes on," : "part " + std::to_string(left_out);
+    const std::string words = part + " is not among";
     EXPECT_TRUE(mentions(found.missing, words)) << all(found);
+  }
+}
+
+TEST_F(VerifyTest, APartAloneSaysWhichOneItIsAndWhereTheOthersAre) {
+  const std::vector<std::string> files = write({.parts = 4});
+  const auto wordsOf = [](const std::string& file) {
+    const Verification found = verify({file});
+    EXPECT_EQ(found.verdict(), Verdict::kIncomplete);
+    return found.missing.at(0);
+  };
+  EXPECT_TRUE(
+      wordsOf(files[0]).starts_with("it is part 0 of run.mcap, which was split; it goes on in run_0001.mcap: "));
+  EXPECT_TRUE(
+      wordsOf(files[1]).starts_with("it is part 1 of run.mcap, which was split; before it comes run.mcap; it "
+                                    "goes on in run_0002.mcap: "));
+  EXPECT_TRUE(
+      wordsOf(files[3]).starts_with("it is part 3 of run.mcap, which was split; before it comes run_0002.mcap: "));
+  for (const std::string& file : files) {
+    EXPECT_EQ(verify({file}).missing.size(), 1U) << "what its writers sent went elsewhere too";
   }
 }
 

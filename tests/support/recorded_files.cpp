@@ -71,20 +71,30 @@ class Files {
       : folder_(std::move(folder)), name_(std::move(name)), plan_(plan) {}
 
   mcap::Writer& begin(const Scenario& scenario) {
-    if (writer_) writer_->close();
-    const std::string number = std::to_string(names_.size());
-    const std::string tail = names_.empty() ? "" : "_" + std::string(4 - number.size(), '0') + number;
+    const auto nameOf = [&](std::size_t index) {
+      const std::string number = std::to_string(index);
+      return name_ + (index == 0 ? "" : "_" + std::string(4 - number.size(), '0') + number) + ".mcap";
+    };
+    const std::string file = nameOf(names_.size());
+    if (writer_) {
+      writer_->addMetadata("baton.part_end", {{"next", file}});
+      writer_->close();
+    }
     channels_.clear();
     mcap::WriterOptions options;
     options.chunk_bytes = plan_.chunk_bytes;
     options.if_exists = mcap::OutputFile::IfExists::kReplace;
     options.sync_on_close = false;
-    writer_ = std::make_unique<mcap::Writer>(folder_ / (name_ + tail + ".mcap"), options);
+    writer_ = std::make_unique<mcap::Writer>(folder_ / file, options);
     writer_->addMetadata("baton.run", {{"run", name_}, {"scenario", scenario.name}});
     writer_->addAttachment("scenario.yaml", "application/yaml", 0, 0, mcap::asBytes(scenario.text));
     writer_->addAttachment("robot.yaml", "application/yaml", 0, 0, mcap::asBytes(scenario.robot_text));
-    if (plan_.parts > 1) writer_->addMetadata("baton.part", {{"index", number}});
-    names_.push_back((folder_ / (name_ + tail + ".mcap")).string());
+    if (plan_.parts > 1) {
+      writer_->addMetadata("baton.part", {{"index", std::to_string(names_.size())},
+                                          {"first", nameOf(0)},
+                                          {"previous", names_.empty() ? "" : nameOf(names_.size() - 1)}});
+    }
+    names_.push_back((folder_ / file).string());
     return *writer_;
   }
   void write(const Ledger::Key& key, std::uint64_t sequence, mcap::ByteView payload) {

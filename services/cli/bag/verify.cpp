@@ -26,6 +26,7 @@ struct Part {
   std::unique_ptr<mcap::Reader> reader{};
   std::string run{};                // empty: not recorded by Baton
   std::optional<unsigned> index{};  // in a recording that was split
+  std::string next{};               // the file in which it goes on; empty: this is the last, or it was cut
 };
 
 /// Its metadata and attachments are read here, so that their damage shows.
@@ -42,6 +43,8 @@ void open(Part& part, const std::function<void(double)>& progress) {
   try {
     part.run = metadataValue(*part.reader, "baton.run", "run");
     part.index = partIndex(*part.reader);
+    // Parts that were merged may have kept the word of one of them.
+    if (part.index) part.next = metadataValue(*part.reader, "baton.part_end", "next");
     for (const mcap::AttachmentIndex& attachment : part.reader->attachments()) {
       (void)part.reader->readAttachment(attachment);
     }
@@ -56,6 +59,16 @@ unsigned firstPart(const Part& last) {
   const nlohmann::json certificate = nlohmann::json::parse(text.value_or(""), nullptr, false);
   if (!certificate.is_object() || !certificate.contains("first_part")) return 0;
   return certificate["first_part"].is_number_unsigned() ? certificate["first_part"].get<unsigned>() : 0;
+}
+
+/// A part alone proves nothing: which one it is, and what is before and behind it.
+std::string placeOf(const Part& part) {
+  const auto said = [&](const char* key) { return metadataValue(*part.reader, "baton.part", key); };
+  return fmt::format(
+      "it is part {} of {}, which was split{}{}: give `bag verify` all the parts, or what `bag merge` "
+      "makes of them",
+      *part.index, said("first"), *part.index > 0 ? "; before it comes " + said("previous") : "",
+      part.next.empty() ? "" : "; it goes on in " + part.next);
 }
 
 /// The parts in their order. What is wrong with the set goes to `missing`.
@@ -76,6 +89,10 @@ std::vector<Part> openParts(const std::vector<std::string>& files, const std::fu
     if (part.index && *part.index != expected) {
       missing.push_back(fmt::format("part {} is not among the files", expected));
     }
+  }
+  if (parts.size() == 1 && (!missing.empty() || !parts[0].next.empty())) missing = {placeOf(parts[0])};
+  if (parts.size() > 1 && !parts.back().next.empty()) {
+    missing.push_back(parts.back().next + ", in which it goes on, is not among the files");
   }
   return parts;
 }
@@ -168,7 +185,9 @@ std::vector<std::string> writersOf(const std::vector<Part>& parts) {
   return servicesBut(kRecorderName, parseScenario("scenario.yaml", *scenario, "robot.yaml", *robot));
 }
 
-void judge(const std::vector<Part>& parts, const std::optional<std::string>& certificate, Verification& result) {
+/// @param are_all  no part of the recording is known to be elsewhere.
+void judge(const std::vector<Part>& parts, bool are_all, const std::optional<std::string>& certificate,
+           Verification& result) {
   const auto add = [](std::vector<std::string>& to, const std::vector<std::string>& sentences) {
     to.insert(to.end(), sentences.begin(), sentences.end());
   };
@@ -183,6 +202,7 @@ void judge(const std::vector<Part>& parts, const std::optional<std::string>& cer
     result.missing.emplace_back("it was not recorded by Baton: nobody says what was sent");
     return;
   }
+  if (!are_all) return;  // what was sent, and what certified, is more than these files have
   try {
     for (const std::string& service : writersOf(parts)) result.ledger.expect(service);
     if (certificate) result.ledger.excuse(*certificate);
@@ -208,6 +228,7 @@ Verdict Verification::verdict() const {
 Verification verifyRecording(const std::vector<std::string>& files, const std::function<void(double)>& progress) {
   Verification result;
   const std::vector<Part> parts = openParts(files, progress, result.missing);
+  const bool are_all = result.missing.empty();
   const auto certificate = attached(parts, "certificate.json");
   if (certificate) result.ledger.beginAt(*certificate);
   Booking booking(result, parts, progress);
@@ -216,7 +237,7 @@ Verification verifyRecording(const std::vector<std::string>& files, const std::f
     result.bytes += part.reader->info().file_bytes;
     booking.book(part);
   }
-  judge(parts, certificate, result);
+  judge(parts, are_all, certificate, result);
   return result;
 }
 
