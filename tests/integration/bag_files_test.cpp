@@ -54,7 +54,15 @@ TEST_F(BagFiles, ARunIsProvenCompleteAndSoIsACopyOfIt) {
   EXPECT_EQ(bench.baton({"bag", "hash", file, path("copy.mcap")}).exit_code, 0);
 
   // Nothing that is there is overwritten unless it is asked for, and never what is read.
-  EXPECT_EQ(bench.baton({"bag", "recover", file, path("copy.mcap")}).exit_code, 3);
+  using Words = std::vector<std::string>;
+  for (const Words& copy : {Words{"recover", file, path("copy.mcap")}, Words{"merge", path("copy.mcap"), file},
+                            Words{"cut", file, path("copy.mcap"), "--to", "1"}}) {
+    Words arguments{"bag"};
+    arguments.insert(arguments.end(), copy.begin(), copy.end());
+    const Finished refused = bench.baton(arguments);
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_NE(refused.err.find("give --overwrite"), std::string::npos) << copy[0] << refused.err;
+  }
   EXPECT_EQ(bench.baton({"bag", "recover", file, path("copy.mcap"), "--overwrite"}).exit_code, 0);
   EXPECT_EQ(bench.baton({"bag", "recover", file, file, "--overwrite"}).exit_code, 2);
   EXPECT_EQ(verify(file), 0);
@@ -152,8 +160,8 @@ TEST_F(BagFiles, APartIsCutOutAndSaysSo) {
   EXPECT_NE(beyond.err.find("--from: expected a time in " + file + ", which ends"), std::string::npos) << beyond.err;
   // A topic that is not in the chosen time.
   fs::copy_file(file, path("kept.mcap"));
-  const Finished nothing = bench.baton({"bag", "cut", file, path("kept.mcap"), "--overwrite", "--topics", "swap_outcome",
-                                        "--to", "0"});
+  const Finished nothing =
+      bench.baton({"bag", "cut", file, path("kept.mcap"), "--overwrite", "--topics", "swap_outcome", "--to", "0"});
   EXPECT_EQ(nothing.exit_code, 2);
   EXPECT_NE(nothing.err.find("expected messages in these topics and times"), std::string::npos) << nothing.err;
   EXPECT_EQ(fs::file_size(path("kept.mcap")), fs::file_size(file)) << "what was there stays";

@@ -13,10 +13,13 @@ void addTarget(CLI::App& command, CopyTarget& target) {
 }
 
 mcap::WriterOptions optionsFor(const CopyTarget& target, const std::vector<std::string>& inputs) {
+  std::error_code ignored;
   for (const std::string& input : inputs) {
-    std::error_code ignored;
     if (!std::filesystem::equivalent(input, target.file, ignored)) continue;
     throw UsageError(target.file + " is the recording that is read: choose another name for the copy");
+  }
+  if (!target.overwrite && std::filesystem::exists(target.file, ignored)) {
+    throw UnavailableError(target.file + " is there already: choose another name, or give --overwrite");
   }
   mcap::WriterOptions options;
   options.library = "baton " BATON_VERSION;

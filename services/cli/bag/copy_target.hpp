@@ -18,7 +18,8 @@ struct CopyTarget {
 /// OUT and --overwrite.
 void addTarget(CLI::App& command, CopyTarget& target);
 
-/// How the file is written. Throws UsageError when it is one of those that are read.
+/// How the file is written. Throws UsageError when it is one of those that are read, and
+/// UnavailableError when it is there and is not to be replaced.
 [[nodiscard]] mcap::WriterOptions optionsFor(const CopyTarget& target, const std::vector<std::string>& inputs);
 
 /// Opens a recording that is to be copied; says on standard error when it is not whole. Throws what Reader throws.
