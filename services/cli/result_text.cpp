@@ -34,6 +34,17 @@ void printSwap(const nlohmann::ordered_json& swap) {
   std::printf("%s%s\n", reason.empty() ? "" : "; ", reason.c_str());
 }
 
+void printRecording(const nlohmann::ordered_json& recording) {
+  const std::string summary = recording.at("summary").get<std::string>();
+  if (recording.at("path").is_null()) {
+    std::printf("recording   none%s\n", summary.empty() ? "" : (": " + summary).c_str());
+    return;
+  }
+  std::printf("recording   %s\n            %.2f MB, %llu messages, %s\n",
+              recording.at("path").get<std::string>().c_str(), recording.at("bytes").get<double>() / 1e6,
+              static_cast<unsigned long long>(recording.at("messages")), summary.c_str());
+}
+
 }  // namespace
 
 void printResult(const nlohmann::ordered_json& result) {
@@ -61,12 +72,7 @@ void printResult(const nlohmann::ordered_json& result) {
     const bool has_come = swap.at("done").get<bool>() || swap.at("at_step") < result.at("steps");
     if (has_come) printSwap(swap);
   }
-  if (const auto& recording = result.at("recording"); !recording.is_null()) {
-    std::printf("recording   %s\n            %.2f MB, %llu messages, %s\n",
-                recording.at("path").get<std::string>().c_str(), recording.at("bytes").get<double>() / 1e6,
-                static_cast<unsigned long long>(recording.at("messages")),
-                recording.at("summary").get<std::string>().c_str());
-  }
+  if (const auto& recording = result.at("recording"); !recording.is_null()) printRecording(recording);
   if (result.contains("folder")) std::printf("logs        %s\n", result.at("folder").get<std::string>().c_str());
 }
 

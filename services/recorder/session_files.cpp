@@ -135,7 +135,7 @@ void RecordingSession::closeAll() {
     } else if (recording_) {
       text_ = finish({});
     } else if (text_.empty()) {
-      text_ = "nothing was recorded";
+      text_ = "nothing was recorded: `baton record start` begins a recording while the run goes on";
     }
     control_.closed();
   } catch (const std::exception& error) {

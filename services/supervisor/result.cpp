@@ -72,13 +72,12 @@ void writeResult(const RunInfo& info, const Scenario& scenario, const RunResult&
   if (info.recording.empty()) {
     json["recording"] = nullptr;
   } else {
-    json["recording"] =
-        Json{{"path", result.recorder.path().size() > 0 ? result.recorder.path().c_str() : info.recording},
-             {"complete", result.recorder.complete()},
-             {"summary", result.recorder.text().c_str()},
-             {"messages", result.recorder.messages()},
-             {"bytes", result.recorder.bytes()},
-             {"lost", result.recorder.lost()}};
+    const std::string path = result.recorder.path().size() > 0 ? result.recorder.path().c_str() : info.recording;
+    std::error_code ignored;
+    const bool is_there = std::filesystem::exists(path, ignored);
+    json["recording"] = Json{{"path", is_there ? Json(path) : Json()},    {"complete", result.recorder.complete()},
+                             {"summary", result.recorder.text().c_str()}, {"messages", result.recorder.messages()},
+                             {"bytes", result.recorder.bytes()},          {"lost", result.recorder.lost()}};
   }
   json["swaps"] = Json::array();
   for (const msg::SwapOutcome& swap : result.swaps) json["swaps"].push_back(toJson(swap, result.reports));

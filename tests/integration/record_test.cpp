@@ -310,7 +310,9 @@ TEST(Record, ARunThatWasNeverRecordedIsNone) {
   one.step(20);
   const Finished down = one.bench.baton({"down"});
   EXPECT_EQ(down.exit_code, 0) << down.out << down.err;
-  EXPECT_NE(down.out.find("nothing was recorded"), std::string::npos) << down.out;
+  EXPECT_NE(down.out.find("none: nothing was recorded: `baton record start`"), std::string::npos) << down.out;
+  EXPECT_EQ(down.out.find(one.run.recording), std::string::npos) << "no file that is not there is named";
+  EXPECT_TRUE(one.run.result().at("recording").at("path").is_null());
   EXPECT_FALSE(fs::exists(one.run.recording));
 }
 
