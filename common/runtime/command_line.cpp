@@ -85,6 +85,16 @@ CLI::Validator notNegative() {
           "NONNEGATIVE"};
 }
 
+CLI::Validator atLeastOne() {
+  return {[](const std::string& text) -> std::string {
+            std::uint64_t number = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+            const bool is_right = error == std::errc() && end == text.data() + text.size() && number > 0;
+            return is_right ? "" : "expected a whole number from 1 on, found '" + text + "'";
+          },
+          "COUNT"};
+}
+
 void addScheduling(CLI::App& app, Scheduling& scheduling) {
   const auto complaint = [](const std::string& text) -> std::string {
     try {

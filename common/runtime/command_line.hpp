@@ -28,6 +28,8 @@ CLI::Option* addTransport(CLI::App& app, dds::Transport& transport);
 [[nodiscard]] double parseRate(const std::string& what, const std::string& text);
 /// For numbers that are finite and not negative; CLI's own check lets NaN pass.
 [[nodiscard]] CLI::Validator notNegative();
+/// For counts: whole numbers from 1 on.
+[[nodiscard]] CLI::Validator atLeastOne();
 /// --fifo and --cpus.
 void addScheduling(CLI::App& app, Scheduling& scheduling);
 

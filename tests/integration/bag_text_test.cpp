@@ -75,8 +75,14 @@ TEST(BagCat, TakesTopicsTimesAndALimit) {
   EXPECT_EQ(bench.baton({"bag", "cat", file, "--from", "2", "--to", "1"}).exit_code, 2);
   const Finished beyond = bench.baton({"bag", "cat", file, "--from", "2"});
   EXPECT_EQ(beyond.exit_code, 2);
-  EXPECT_NE(beyond.err.find("which ends 0.009000 s behind its first message, found 2"), std::string::npos) << beyond.err;
-  EXPECT_EQ(bench.baton({"bag", "cat", file, "--limit", "0"}).exit_code, 2);
+  EXPECT_NE(beyond.err.find("which ends 0.009000 s behind its first message, found 2"), std::string::npos)
+      << beyond.err;
+  for (const std::string limit : {"0", "-1", "1.5", "many"}) {
+    const Finished refused = bench.baton({"bag", "cat", file, "--limit", limit});
+    EXPECT_EQ(refused.exit_code, 2) << limit;
+    EXPECT_NE(refused.err.find("--limit: expected a whole number from 1 on, found '" + limit + "'"), std::string::npos)
+        << refused.err;
+  }
   EXPECT_EQ(bench.baton({"bag", "cat", bench.write("no.mcap", "nothing")}).exit_code, 2);
   EXPECT_EQ(bench.baton({"bag", "cat", (bench.folder() / "none.mcap").string()}).exit_code, 3);
 }

@@ -11,6 +11,7 @@
 #include "bag/selection.hpp"
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
+#include "runtime/command_line.hpp"
 
 namespace baton {
 namespace {
@@ -64,7 +65,7 @@ void addBagCat(CLI::App& bag, ExitCode& exit_code) {
       "2 wrong input or not a recording, 3 cannot be opened or printed.");
   addTopicSelection(*command, request->selection);
   addTimeSelection(*command, request->selection);
-  command->add_option("--limit", request->limit, "end after so many messages")->check(CLI::PositiveNumber);
+  command->add_option("--limit", request->limit, "end after so many messages")->check(atLeastOne());
   command->add_flag("--raw", request->raw, "bytes in hex, whatever the topic");
   command->callback([request, &exit_code] { exit_code = cat(*request); });
 }
