@@ -48,7 +48,7 @@ void Ledger::dropped(Stream& booked, std::uint64_t first_sequence, std::uint64_t
     note(booked, stream.last_sequence + 1, first_sequence - 1, "never came");
   }
   note(booked, first_sequence, last_sequence, "came faster than it could be written");
-  dropped_ += last_sequence - first_sequence + 1;
+  stream.dropped += last_sequence - first_sequence + 1;
   stream.last_sequence = last_sequence;
 }
 
@@ -112,12 +112,13 @@ std::vector<std::string> Ledger::problemsOf(const msg::ServiceManifest& manifest
     if (const auto told = testimonies_.find({topic, dds::Guid{sent.writer()}}); told != testimonies_.end()) {
       received.count = told->second.count;
       received.stream_hash = told->second.hash;
+      received.excused = told->second.excused;
     }
     const std::string what = topic + " of " + manifest.name().c_str();
-    if (received.count != sent.count()) {
+    if (received.count + received.excused != sent.count()) {
       result.push_back(what + ": " + std::to_string(sent.count()) + " samples sent, " + std::to_string(received.count) +
                        " recorded");
-    } else if (received.stream_hash != sent.stream_hash()) {
+    } else if (received.excused == 0 && received.stream_hash != sent.stream_hash()) {
       result.push_back(what + ": the recorded bytes are not those sent");
     }
   }
@@ -144,11 +145,13 @@ std::vector<std::string> Ledger::problemsSoFar() const { return gapsBut({}); }
 /// What is missing of streams other than these, of which is known already; and what concerns none in particular.
 std::vector<std::string> Ledger::gapsBut(const std::set<Key>& known) const {
   std::vector<std::string> result(unrecordable_.begin(), unrecordable_.end());
-  if (dropped_ > 0) result.push_back(std::to_string(dropped_) + " samples came faster than they could be written");
+  std::uint64_t dropped = 0;
+  for (const auto& [key, stream] : streams_) dropped += stream.excused == 0 ? stream.dropped : 0;
+  if (dropped > 0) result.push_back(std::to_string(dropped) + " samples came faster than they could be written");
   for (const auto& [key, stream] : streams_) {
-    if (stream.missing == 0 || dds::isStatusTopic(key.first) || known.contains(key) || left_out_.contains(key.first))
-      continue;
-    result.push_back(key.first + " of " + dds::toString(key.second) + ": " + std::to_string(stream.missing) +
+    const std::uint64_t missing = stream.missing - stream.excused;
+    if (missing == 0 || dds::isStatusTopic(key.first) || known.contains(key) || left_out_.contains(key.first)) continue;
+    result.push_back(key.first + " of " + dds::toString(key.second) + ": " + std::to_string(missing) +
                      " samples are missing");
   }
   return result;
@@ -236,7 +239,9 @@ void Ledger::excuse(const std::string& certificate) {
   }
   forEachRow(certificate, [this](const Json& row, const Key& key) {
     if (row.contains("received")) {
-      testimonies_[key] = {row.at("received").get<std::uint64_t>(), numberIn(row, "received_hash")};
+      testimonies_[key] = {.count = row.at("received").get<std::uint64_t>(),
+                           .hash = numberIn(row, "received_hash"),
+                           .excused = row.value("lost_before", std::uint64_t{0})};
     }
     if (const auto found = streams_.find(key); found != streams_.end()) {
       found->second.missing -= std::min(found->second.missing, row.value("left_out", std::uint64_t{0}));

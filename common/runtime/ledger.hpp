@@ -23,6 +23,8 @@ struct ReceivedStream {
   std::uint64_t last_sequence = 0;
   std::uint64_t count = 0;
   std::uint64_t missing = 0;  // holes between first and last, and what found no room
+  std::uint64_t dropped = 0;  // of these, what found no room
+  std::uint64_t excused = 0;  // of the missing: lost before the file began that is judged
   std::uint64_t stream_hash = 0;
 };
 
@@ -103,12 +105,12 @@ class Ledger {
   std::set<std::string> given_up_;
   std::map<Key, ReceivedStream> streams_;
   std::vector<Gap> gaps_;
-  std::uint64_t dropped_ = 0;
   std::set<std::string> left_out_;
   std::set<std::string> unrecordable_;
   struct Testimony {
     std::uint64_t count = 0;
     std::uint64_t hash = 0;
+    std::uint64_t excused = 0;
   };
   std::map<Key, Testimony> testimonies_;         // of a certificate, on what came and is not in the files
   bool is_excerpt_ = false;                      // nobody in the files says what was sent

@@ -61,7 +61,8 @@ void Certificate::add(const Stream& stream, RecordedStream recorded) {
     if (const std::uint64_t left_out = span - recorded.count - recorded.missing; left_out > 0)
       row["left_out"] = left_out;
   }
-  if (recorded.count != received.count) {
+  if (received.excused > 0) row["lost_before"] = received.excused;
+  if (recorded.count != received.count || received.excused > 0) {
     row["received"] = received.count;
     row["received_hash"] = std::to_string(received.stream_hash);
   }
@@ -97,7 +98,9 @@ std::string Certificate::text() const {
                      {"reason", hole.reason}});
   }
   for (const Ledger::Gap& gap : ledger_.gaps()) {
-    const Json row = ledger_.rowOf(*ledger_.streams().find(gap.stream));
+    const Ledger::Stream& stream = *ledger_.streams().find(gap.stream);
+    if (stream.second.excused > 0) continue;  // all of them
+    const Json row = ledger_.rowOf(stream);
     gaps.push_back({{"topic", gap.stream.first},
                     {"writer", dds::toString(gap.stream.second)},
                     {"service", row.value("service", "")},

@@ -64,6 +64,10 @@ class Recording {
   [[nodiscard]] bool holds(const Stream& stream) const {
     return stream.index < written_.size() && written_[stream.index].stream != nullptr;
   }
+  /// How many are missing between the first and the last of it that are here.
+  [[nodiscard]] std::uint64_t missing(const Stream& stream) const {
+    return holds(stream) ? written_[stream.index].recorded.missing : 0;
+  }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Of those that are there.
   [[nodiscard]] const std::filesystem::path& firstPart() const { return parts_.front().path; }

@@ -91,12 +91,14 @@ void RecordingSession::takeBatch(const SampleQueue::Batch& batch) {
     // Also what found no room in the queue, which is booked behind the batch it was dropped from.
     const std::uint64_t missing = stream.received->second.missing;
     const std::uint64_t lost_before = missing - std::exchange(stream.missing_so_far, missing);
+    if (lost_before > 0) stream.lost_at = credit_.elapsedSteps();
     if (stream.is_recorded) keep(stream, entry, payload, lost_before);
     if (stream.role != Stream::Role::kOther) learn(stream, payload);
   }
   for (const SampleQueue::Drop& drop : batch.drops) {
-    const Stream& stream = streamOf(drop.topic, drop.writer);
+    Stream& stream = streamOf(drop.topic, drop.writer);
     if (stream.is_booked) ledger_.dropped(*stream.received, drop.first_sequence, drop.last_sequence);
+    stream.lost_at = credit_.elapsedSteps();
   }
 }
 
@@ -232,6 +234,7 @@ void RecordingSession::start(const std::string& path) {
   }
   recording_ = std::make_unique<Recording>(path, config_, origin_, credit_.elapsedSteps(), credit_.stateStep());
   holes_.clear();
+  begun_at_ = credit_.elapsedSteps();
   path_ = path;
   free_bytes_ = freeBytes();
   text_.clear();

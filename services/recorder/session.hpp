@@ -61,7 +61,8 @@ class RecordingSession {
   [[nodiscard]] std::uint64_t freeBytes() const;
   std::string finish(const Ending& ending);
   std::string writeRing(const std::string& path, const Ending& ending);
-  std::string close(Recording& recording, const Ending& ending, const std::vector<Hole>& holes);
+  std::string close(Recording& recording, std::uint64_t begun_at, const Ending& ending, const std::vector<Hole>& holes);
+  void excuseLosses(const Recording& recording, std::uint64_t begun_at);
   void closeAll();
   void fail(const std::string& what);
 
@@ -83,6 +84,7 @@ class RecordingSession {
   std::unique_ptr<Recording> recording_;
   std::unique_ptr<Ring> ring_;
   std::string path_;            // of the latest recording
+  std::uint64_t begun_at_ = 0;  // steps of the run, when it began
   bool is_limited_ = false;     // by the disk, or split
   std::string text_;            // what the status says
   std::uint64_t progress_ = 0;  // samples of which every one matters

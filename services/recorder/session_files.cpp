@@ -67,14 +67,25 @@ std::string RecordingSession::finish(const Ending& ending) {
   // Whatever happens here, it is over.
   const std::unique_ptr<Recording> recording = std::move(recording_);
   const Tally tally{*recording, finished_messages_, finished_bytes_};
-  std::string summary = close(*recording, ending, holes_.between(0, credit_.stateStep()));
+  std::string summary = close(*recording, begun_at_, ending, holes_.between(0, credit_.stateStep()));
   holes_.clear();
   return summary;
 }
 
-std::string RecordingSession::close(Recording& recording, const Ending& ending, const std::vector<Hole>& holes) {
+/// Samples of which it was noticed before the file began that they are missing are no loss of this file. Whatever may
+/// lie within it is: what was noticed later, and holes between samples that are in it.
+void RecordingSession::excuseLosses(const Recording& recording, std::uint64_t begun_at) {
+  for (const auto& [key, stream] : streams_) {
+    ReceivedStream& received = stream.received->second;
+    received.excused = stream.lost_at < begun_at && recording.missing(stream) == 0 ? received.missing : 0;
+  }
+}
+
+std::string RecordingSession::close(Recording& recording, std::uint64_t begun_at, const Ending& ending,
+                                    const std::vector<Hole>& holes) {
   for (const std::string& topic : topics_.leftOut()) ledger_.leaveOut(topic);
   for (const std::string& what : topics_.unreadable()) ledger_.cannotRecord(what);
+  excuseLosses(recording, begun_at);
   Certificate certificate(ledger_, ending);
   certificate.setUnmatched(topics_.unmatched());
   for (const auto& [key, stream] : streams_) {
@@ -108,7 +119,7 @@ std::string RecordingSession::writeRing(const std::string& path, const Ending& e
                                               .lost_before = sample.lost_before,
                                               .payload = sample.payload});
   });
-  return close(recording, ending, holes_.between(from_step, credit_.stateStep()));
+  return close(recording, ring_->firstStep().value_or(0), ending, holes_.between(from_step, credit_.stateStep()));
 }
 
 /// Nothing more is written; what comes is taken all the same, so that the run goes on.

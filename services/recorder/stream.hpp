@@ -26,6 +26,7 @@ struct Stream {
   bool is_status = false;
   bool is_manifest = false;          // what is sent at the end: kept in a pause as well
   std::uint64_t missing_so_far = 0;  // of what came, when its latest sample came
+  std::uint64_t lost_at = 0;         // steps of the run, when it was noticed last that samples are missing
   bool lasts = false;                // late joiners are told of what was before
 
   [[nodiscard]] const std::string& topic() const { return received->first.first; }

@@ -362,6 +362,13 @@ TEST(Record, WhatIsLostInRealTimeIsCountedByWriterAndIsAGapInTheCertificate) {
   }));
   ASSERT_FALSE(status.at("losses").empty());
   EXPECT_GT(status.at("losses").at(0).at("lost"), 0);
+  // What was lost before a second file began is no loss of that one; of every stream it is noticed with the next sample.
+  run.waitForStep(from + 11'000);
+  EXPECT_EQ(bench.baton({"record", "stop"}).exit_code, 0);
+  const fs::path second = bench.folder() / "second.mcap";
+  run.waitForStep(bench.batonJson({"status", "--json"}).at("step").get<std::uint64_t>() + 200);
+  EXPECT_EQ(bench.baton({"record", "start", "--out", second.string()}).exit_code, 0);
+  run.waitForStep(bench.batonJson({"status", "--json"}).at("step").get<std::uint64_t>() + 200);
   const Finished down = bench.baton({"down"});
   EXPECT_EQ(down.exit_code, 1) << down.out << down.err;
   const Json certificate = certificateOf(run.recording);
@@ -380,6 +387,16 @@ TEST(Record, WhatIsLostInRealTimeIsCountedByWriterAndIsAGapInTheCertificate) {
     }
   }
   EXPECT_GT(lost["plant_state"], 0U);
+
+  const Json after = certificateOf(second);
+  EXPECT_EQ(after.at("complete"), true) << after.at("problems");
+  EXPECT_TRUE(after.at("gaps").empty());
+  for (const Json& row : after.at("streams")) {
+    if (row.at("topic") == "plant_state") {
+      EXPECT_EQ(row.at("lost_before"), lost["plant_state"]);
+    }
+  }
+  expectVerified(bench, {second});
 }
 
 TEST(Record, WritersOfAnotherVendorAreFoundAsTheyAppear) {

@@ -334,6 +334,39 @@ TEST_F(RecordingTest, WhatIsLostIsAGapOfItsWriter) {
   EXPECT_EQ(certificate.at("gaps").at(1).at("reason"), "never came");
 }
 
+TEST_F(RecordingTest, WhatWasLostBeforeItBeganIsNoLossOfIt) {
+  open("");
+  Stream& to = stream(0);
+  ledger_.dropped(*to.received, 1, 3);
+  for (int i = 0; i < 5; ++i) write(0);
+  EXPECT_EQ(recording_->missing(to), 0u);
+  to.received->second.excused = 3;
+  const Json certificate = finish();
+  EXPECT_EQ(certificate.at("complete"), true) << certificate.at("problems");
+  EXPECT_TRUE(certificate.at("gaps").empty());
+  EXPECT_EQ(certificate.at("streams").at(0).at("lost_before"), 3u);
+  EXPECT_EQ(certificate.at("streams").at(0).at("missing"), 0u);
+
+  // Who reads it does the sums again.
+  msg::StreamManifest sent;
+  sent.topic(to.topic());
+  sent.writer(to.writer().bytes);
+  sent.count(8);
+  msg::ServiceManifest manifest;
+  manifest.name("plant");
+  manifest.streams().push_back(sent);
+  Ledger reader{{"plant"}};
+  reader.addManifest(manifest);
+  mcap::Reader(file()).forEachMessage({}, [&](const mcap::MessageView& message) {
+    ASSERT_TRUE(reader.book({to.topic(), to.writer()}, message.sequence, message.data));
+  });
+  EXPECT_FALSE(reader.isComplete());
+  Json at_the_end = certificate;
+  at_the_end["run_is_over"] = true;
+  reader.excuse(at_the_end.dump());
+  EXPECT_TRUE(reader.isComplete()) << reader.problems()[0];
+}
+
 TEST_F(RecordingTest, ARecordingThatEndsOtherwiseThanWantedIsIncomplete) {
   open("");
   write(0);

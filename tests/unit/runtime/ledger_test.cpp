@@ -384,6 +384,23 @@ TEST_F(LedgerTest, WhatFoundNoRoomIsCountedOnceAndListed) {
   EXPECT_TRUE(mentions(ledger_.problems(), "5 samples came faster than they could be written"));
 }
 
+TEST_F(LedgerTest, WhatWasLostBeforeTheFileBeganIsExcusedAndNothingElse) {
+  transmit(state_, 10);
+  Ledger::Stream& stream = ledger_.streamOf(state_.key());
+  for (int i = 0; i < 5; ++i) state_.send();
+  ledger_.dropped(stream, 11, 15);
+  transmit(state_, 5);
+  EXPECT_EQ(ledger_.problemsSoFar().size(), 2u);
+  stream.second.excused = 5;
+  EXPECT_TRUE(ledger_.problemsSoFar().empty());
+  EXPECT_EQ(ledger_.missing(), 5u) << "of the run";
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  ledger_.addManifest(manifestOf("environment", {}));
+  EXPECT_TRUE(ledger_.isComplete()) << ledger_.problems()[0];
+  stream.second.excused = 4;
+  EXPECT_TRUE(mentions(ledger_.problems(), "20 samples sent, 15 recorded"));
+}
+
 TEST_F(LedgerTest, WhatFoundNoRoomBeforeTheFirstIsMissingToo) {
   ledger_.dropped(ledger_.streamOf(state_.key()), 1, 4);
   for (int i = 0; i < 4; ++i) state_.send();
