@@ -44,7 +44,7 @@ RecordingSession::RecordingSession(Service& service, SampleQueue& queue, const T
       ledger_(servicesBut(kRecorderName, service.scenario())),
       path_(service.options().out),
       is_limited_(config_.isSplit() || config_.max_bytes > 0 || config_.min_free_bytes > 0) {
-  free_bytes_ = freeBytes();
+  free_bytes_ = freeBytes(path_);
   if (control_.isRing()) {
     ring_ = std::make_unique<Ring>(config_.ring_steps, config_.ring_bytes);
   } else if (control_.keeps()) {
@@ -187,7 +187,7 @@ msg::RecordReply RecordingSession::answer(const msg::RecordRequest& request) {
   msg::RecordReply reply;
   std::string text = control_.objection(request.action());
   if (text.empty() && has_run_ended_) text = "the run is over";
-  if (text.empty()) text = objectionTo(request.path().c_str(), request.action());
+  if (text.empty()) text = objectionTo(request);
   if (!text.empty()) {
     reply.text(text);
     return reply;
@@ -219,11 +219,12 @@ msg::RecordReply RecordingSession::answer(const msg::RecordRequest& request) {
 }
 
 /// Paths come from anybody. A file that is there is never replaced.
-std::string RecordingSession::objectionTo(const std::string& path, msg::RecordAction action) const {
-  if (path.empty()) return "";
-  if (!std::filesystem::path(path).is_absolute()) return "expected an absolute path, found " + path;
-  const bool is_taken = action == msg::RECORD_SNAPSHOT && path == path_;
-  return is_taken ? path + " is where the ring goes at the end of the run" : "";
+std::string RecordingSession::objectionTo(const msg::RecordRequest& request) const {
+  const std::string path = request.path().c_str();
+  if (!path.empty() && !std::filesystem::path(path).is_absolute()) return "expected an absolute path, found " + path;
+  if (request.action() != msg::RECORD_SNAPSHOT) return "";
+  if (path == path_) return path + " is where the ring goes at the end of the run";
+  return roomObjection(config_, ring_->bytes(), freeBytes(pathOf(request)));
 }
 
 void RecordingSession::start(const std::string& path) {
@@ -236,7 +237,7 @@ void RecordingSession::start(const std::string& path) {
   holes_.clear();
   begun_at_ = credit_.elapsedSteps();
   path_ = path;
-  free_bytes_ = freeBytes();
+  free_bytes_ = freeBytes(path_);
   text_.clear();
 }
 
@@ -277,7 +278,7 @@ void RecordingSession::tend() {
   if (!is_synced) synced_ = Clock::now();
   if (is_tended) return;
   tended_ = now;
-  free_bytes_ = freeBytes();
+  free_bytes_ = freeBytes(path_);
   publishStatus();
 }
 

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -47,7 +48,7 @@ class RecordingSession {
   [[nodiscard]] std::vector<msg::RecordRequest> takeRequests();
   void reply(const msg::RecordRequest& request);
   [[nodiscard]] msg::RecordReply answer(const msg::RecordRequest& request);
-  [[nodiscard]] std::string objectionTo(const std::string& path, msg::RecordAction action) const;
+  [[nodiscard]] std::string objectionTo(const msg::RecordRequest& request) const;
   void start(const std::string& path);
   std::string pathOf(const msg::RecordRequest& request) const;
   // what is done now and then
@@ -58,7 +59,7 @@ class RecordingSession {
   void addLosses(msg::RecorderStatus& status) const;
   // session_files.cpp: files that grow, and how they end
   void makeRoom();
-  [[nodiscard]] std::uint64_t freeBytes() const;
+  [[nodiscard]] static std::uint64_t freeBytes(const std::filesystem::path& file);
   std::string finish(const Ending& ending);
   std::string writeRing(const std::string& path, const Ending& ending);
   std::string close(Recording& recording, std::uint64_t begun_at, const Ending& ending, const std::vector<Hole>& holes);

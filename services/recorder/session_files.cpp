@@ -10,9 +10,10 @@
 
 namespace baton {
 
-std::uint64_t RecordingSession::freeBytes() const {
+/// On its disk.
+std::uint64_t RecordingSession::freeBytes(const std::filesystem::path& file) {
   struct statvfs disk {};
-  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+  const std::filesystem::path folder = file.parent_path();
   if (statvfs(folder.empty() ? "." : folder.c_str(), &disk) != 0) return std::numeric_limits<std::uint64_t>::max();
   return std::uint64_t{disk.f_bavail} * disk.f_frsize;
 }
@@ -26,7 +27,7 @@ void RecordingSession::makeRoom() {
       Storage storage = recording_->storage();
       // Others write there as well; between two chunks nothing of ours comes to it.
       const std::uint64_t bytes = storage.closed_bytes + storage.part_bytes;
-      if (std::exchange(measured_bytes_, bytes) != bytes) free_bytes_ = freeBytes();
+      if (std::exchange(measured_bytes_, bytes) != bytes) free_bytes_ = freeBytes(path_);
       storage.free_bytes = free_bytes_;
       const StorageVerdict verdict = judgeStorage(config_, storage);
       if (verdict == StorageVerdict::kGoOn) return;

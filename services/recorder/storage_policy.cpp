@@ -5,6 +5,8 @@
 namespace baton {
 namespace {
 
+double mega(std::uint64_t bytes) { return static_cast<double>(bytes) * 1e-6; }
+
 bool isOverBudget(const RecordingConfig& config, const Storage& storage) {
   return config.max_bytes > 0 &&
          storage.closed_bytes + storage.part_bytes + closingBytes(config, storage.part_bytes) >= config.max_bytes;
@@ -34,8 +36,16 @@ StorageVerdict judgeStorage(const RecordingConfig& config, const Storage& storag
   return config.drops_oldest && storage.closed_parts > 0 ? StorageVerdict::kDropOldest : StorageVerdict::kStop;
 }
 
+std::string roomObjection(const RecordingConfig& config, std::uint64_t bytes, std::uint64_t free_bytes) {
+  const std::uint64_t needed = bytes + closingBytes(config, bytes);
+  if (config.min_free_bytes == 0 || free_bytes >= config.min_free_bytes + needed) return "";
+  return fmt::format(
+      "up to {:.1f} MB would be written, and recording.min_free_MB, {:g}, has to be left: the disk has "
+      "{:.1f} MB; make room, or write to another disk with --out",
+      mega(needed), mega(config.min_free_bytes), mega(free_bytes));
+}
+
 std::string reachedText(const RecordingConfig& config, const Storage& storage) {
-  const auto mega = [](std::uint64_t bytes) { return static_cast<double>(bytes) * 1e-6; };
   if (isDiskLow(config, storage)) {
     return fmt::format("recording.min_free_MB, {:g}, is reached: the disk has {:.1f} MB left",
                        mega(config.min_free_bytes), mega(storage.free_bytes));

@@ -24,6 +24,8 @@ enum class StorageVerdict { kGoOn, kDropOldest, kStop };
 /// What the part being written will grow by when it is ended now: its last chunk, the index, the certificate.
 [[nodiscard]] std::uint64_t closingBytes(const RecordingConfig& config, std::uint64_t part_bytes);
 [[nodiscard]] StorageVerdict judgeStorage(const RecordingConfig& config, const Storage& storage);
+/// Why a file of so many bytes, before compression, is not to be written to a disk with so many left; empty when it is.
+[[nodiscard]] std::string roomObjection(const RecordingConfig& config, std::uint64_t bytes, std::uint64_t free_bytes);
 /// What has been reached, for the verdicts that change something: "recording.max_MB is reached: 40.0 of 40 MB".
 [[nodiscard]] std::string reachedText(const RecordingConfig& config, const Storage& storage);
 

@@ -345,6 +345,17 @@ TEST(Record, ARingIsWrittenOnRequestAndAtTheEnd) {
   EXPECT_EQ(certificateOf(one.file("shot.mcap")).at("from_step"), 160);
 }
 
+TEST(Record, ASnapshotThatWouldFillTheDiskIsRefused) {
+  SteppedRun one("ring_s: 0.02, min_free_MB: 1e9");
+  one.step(50);
+  const Json refused = one.record({"snapshot", "--out", one.file("shot.mcap").string()});
+  EXPECT_EQ(refused.at("accepted"), false);
+  EXPECT_NE(refused.at("text").get<std::string>().find("recording.min_free_MB"), std::string::npos) << refused;
+  EXPECT_FALSE(fs::exists(one.file("shot.mcap")));
+  const Finished down = one.bench.baton({"down"});
+  EXPECT_EQ(down.exit_code, 0) << down.out << down.err;
+}
+
 TEST(Record, WhatIsLostInRealTimeIsCountedByWriterAndIsAGapInTheCertificate) {
   const Bench bench;
   const LiveRun run(bench, endlessContact("mode: realtime\n"));

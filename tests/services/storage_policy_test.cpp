@@ -64,6 +64,17 @@ TEST(LowDisk, EndsTheRecordingOrDropsTheOldestSoEarlyThatSoMuchIsLeftBehindTheFi
   EXPECT_EQ(judgeStorage(config, low), StorageVerdict::kDropOldest);
 }
 
+TEST(Snapshot, IsWrittenOnlyWhereSoMuchIsLeftBehindIt) {
+  RecordingConfig config;
+  config.min_free_bytes = 50 * kMB;
+  const std::uint64_t least = 50 * kMB + 20 * kMB + closingBytes(config, 20 * kMB);
+  EXPECT_EQ(roomObjection(config, 20 * kMB, least), "");
+  const std::string objection = roomObjection(config, 20 * kMB, least - 1);
+  EXPECT_NE(objection.find("recording.min_free_MB, 50, has to be left"), std::string::npos) << objection;
+  config.min_free_bytes = 0;
+  EXPECT_EQ(roomObjection(config, 20 * kMB, 0), "") << "nothing was asked for";
+}
+
 TEST(NoPolicy, NeverEndsARecording) {
   RecordingConfig config;
   config.min_free_bytes = 0;
