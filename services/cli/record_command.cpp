@@ -1,5 +1,7 @@
 #include "record_command.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -84,15 +86,16 @@ void recordStatus(const CellTarget& target, ExitCode& exit_code) {
   }
 }
 
-const char* doneText(msg::RecordAction action) {
+/// With the first step that is in the file or out of it, or the last.
+std::string doneText(msg::RecordAction action, std::uint64_t last_before) {
   switch (action) {
-    case msg::RECORD_START: return "recording from step";
-    case msg::RECORD_STOP: return "ended at step";
-    case msg::RECORD_PAUSE: return "paused at step";
-    case msg::RECORD_RESUME: return "recording again from step";
-    case msg::RECORD_SNAPSHOT: return "written up to step";
+    case msg::RECORD_START: return fmt::format("recording from step {} on", last_before + 1);
+    case msg::RECORD_STOP: return fmt::format("ended behind step {}", last_before);
+    case msg::RECORD_PAUSE: return fmt::format("paused from step {} on", last_before + 1);
+    case msg::RECORD_RESUME: return fmt::format("recording again from step {} on", last_before + 1);
+    case msg::RECORD_SNAPSHOT: return fmt::format("written up to step {}", last_before);
   }
-  return "done at step";
+  return fmt::format("done behind step {}", last_before);
 }
 
 /// The recorder's own folder is not this one.
@@ -131,7 +134,7 @@ void ask(const Arguments& arguments, msg::RecordAction action, ExitCode& exit_co
               << '\n';
   } else if (reply->accepted()) {
     const std::string text = reply->text().c_str();
-    std::printf("%s %llu: %s%s\n", doneText(action), ull{reply->step()}, reply->path().c_str(),
+    std::printf("%s: %s%s\n", doneText(action, reply->step()).c_str(), reply->path().c_str(),
                 text.empty() ? "" : (", " + text).c_str());
   } else {
     std::printf("refused at step %llu: %s\n", ull{reply->step()}, reply->text().c_str());
@@ -146,7 +149,8 @@ void addRecordCommand(CLI::App& app, ExitCode& exit_code) {
   command->footer(
       "The run goes on whatever is asked here. What is left out on purpose is told in the certificate, step by step, "
       "and\n"
-      "makes no recording incomplete.\n"
+      "makes no recording incomplete. Steps are those of plant_state; in JSON, \"step\" is the last one before what\n"
+      "was asked took effect.\n"
       "Exit codes: 0 done; 1 refused, or the recorder has failed; 2 wrong input; 3 no run, no recorder, no answer.");
   const auto arguments = std::make_shared<Arguments>();
   const auto add = [&](const char* name, const char* help) {

@@ -177,7 +177,7 @@ void RecordingSession::reply(const msg::RecordRequest& request) {
   msg::RecordReply reply = answer(request);
   reply.request_id(request.request_id());
   reply.state(control_.state());
-  reply.step(credit_.acknowledged());
+  reply.step(credit_.stateStep());
   publishStatus();
   const std::lock_guard lock(service_.mutex());
   reply_out_.write(reply);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -291,6 +292,32 @@ TEST(Record, IsStartedPausedResumedAndStoppedWhileTheRunGoesOn) {
   EXPECT_FALSE(fs::exists(one.run.recording)) << "nothing was recorded there";
   expectVerified(one.bench, {one.file("a.mcap")});
   expectVerified(one.bench, {one.file("b.mcap")});
+}
+
+TEST(Record, TheStepsThatAreToldAreThoseOfTheHole) {
+  const Bench bench;
+  const LiveRun run(bench, restingContact());
+  const auto stepOf = [&](const char* action) {
+    return bench.batonJson({"record", action, "--json"}).at("step").get<std::uint64_t>();
+  };
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> told;
+  for (int i = 0; i < 4; ++i) {
+    const std::uint64_t paused = stepOf("pause");
+    told.emplace_back(paused + 1, stepOf("resume"));
+  }
+  const Finished down = bench.baton({"down"});
+  EXPECT_EQ(down.exit_code, 0) << down.out << down.err;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> holes;
+  const Json certificate = certificateOf(run.recording);
+  for (const Json& hole : certificate.at("holes")) {
+    holes.emplace_back(hole.at("from_step"), hole.at("to_step"));
+  }
+  EXPECT_EQ(told, holes);
+  const std::vector<std::uint64_t> steps = stateSteps(run.recording);
+  for (const auto& [from, to] : holes) {
+    EXPECT_TRUE(std::ranges::binary_search(steps, from - 1) && std::ranges::binary_search(steps, to + 1));
+    EXPECT_FALSE(std::ranges::binary_search(steps, from) || std::ranges::binary_search(steps, to));
+  }
 }
 
 TEST(Record, APauseThatLastsToTheEndLeavesNobodyUnvouched) {
