@@ -74,7 +74,7 @@ ExitCode RecordingSession::run() {
   closeAll();
   for (const msg::RecordRequest& request : requests) reply(request);
   for (const msg::RecordRequest& request : takeRequests()) reply(request);
-  return is_incomplete_ ? ExitCode::kFailed : ExitCode::kOk;
+  return incomplete_.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 // --- what comes
@@ -306,7 +306,7 @@ void RecordingSession::publishStatus() {
   status.disk_left(free_bytes_);
   status.lost(ledger_.missing());
   if (status.lost() > 0) addLosses(status);
-  status.complete(control_.state() == msg::RECORDER_CLOSED && !is_incomplete_);
+  status.complete(control_.state() == msg::RECORDER_CLOSED && incomplete_.empty());
   status.path(path_);
   status.text(text_.substr(0, kMaxStatusText));
   status_out_.write(status);

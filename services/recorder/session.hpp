@@ -97,7 +97,7 @@ class RecordingSession {
   std::uint64_t measured_bytes_ = 0;     // of the recording when the disk was last looked at
   std::uint64_t finished_messages_ = 0;  // of the latest recording, when it is finished
   std::uint64_t finished_bytes_ = 0;
-  bool is_incomplete_ = false;  // one of the recordings made
+  std::string incomplete_;  // the first of the recordings made that is
 
   std::mutex requests_mutex_;
   std::vector<msg::RecordRequest> requests_;

@@ -95,7 +95,7 @@ std::string RecordingSession::close(Recording& recording, std::uint64_t begun_at
   recording.finish(certificate, credit_.stateStep(), holes,
                    {{"parameters.json", "application/json", notes_.parameters()},
                     {"events.json", "application/json", notes_.events()}});
-  is_incomplete_ = is_incomplete_ || !certificate.isComplete();
+  if (!certificate.isComplete() && incomplete_.empty()) incomplete_ = recording.firstPart().string();
   spdlog::info("closed path={} parts={} messages={} bytes={} {}", recording.path().string(), recording.part() + 1,
                recording.messages(), recording.bytes(), certificate.summary());
   for (const std::string& problem : certificate.problems()) spdlog::warn("incomplete: {}", problem);
@@ -133,7 +133,7 @@ void RecordingSession::fail(const std::string& what) {
     // What is in the file up to here stays readable.
   }
   ring_.reset();
-  is_incomplete_ = true;
+  if (incomplete_.empty()) incomplete_ = path_;
   control_.failed();
   publishStatus();
   service_.event(msg::SEVERITY_ERROR, "record", text_ + "; the run goes on");
@@ -148,6 +148,11 @@ void RecordingSession::closeAll() {
       text_ = finish({});
     } else if (text_.empty()) {
       text_ = "nothing was recorded: `baton record start` begins a recording while the run goes on";
+    }
+    // The verdict is on all that the run has recorded, not on the latest file alone.
+    if (!incomplete_.empty() && incomplete_ != path_) {
+      const std::string name = std::filesystem::path(incomplete_).filename().string();
+      text_ = "incomplete: " + name + ", an earlier recording of this run; the latest: " + text_;
     }
     control_.closed();
   } catch (const std::exception& error) {

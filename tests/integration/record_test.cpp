@@ -400,7 +400,8 @@ TEST(Record, WhatIsLostInRealTimeIsCountedByWriterAndIsAGapInTheCertificate) {
   }));
   ASSERT_FALSE(status.at("losses").empty());
   EXPECT_GT(status.at("losses").at(0).at("lost"), 0);
-  // What was lost before a second file began is no loss of that one; of every stream it is noticed with the next sample.
+  // What was lost before a second file began is no loss of that one; of every stream it is noticed with the next
+  // sample.
   run.waitForStep(from + 11'000);
   EXPECT_EQ(bench.baton({"record", "stop"}).exit_code, 0);
   const fs::path second = bench.folder() / "second.mcap";
@@ -426,6 +427,9 @@ TEST(Record, WhatIsLostInRealTimeIsCountedByWriterAndIsAGapInTheCertificate) {
   }
   EXPECT_GT(lost["plant_state"], 0U);
 
+  EXPECT_NE(down.out.find("incomplete: live.mcap, an earlier recording of this run; the latest: complete"),
+            std::string::npos)
+      << down.out;
   const Json after = certificateOf(second);
   EXPECT_EQ(after.at("complete"), true) << after.at("problems");
   EXPECT_TRUE(after.at("gaps").empty());
