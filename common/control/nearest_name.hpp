@@ -25,17 +25,24 @@ namespace baton {
   return row.back();
 }
 
+/// "; did you mean 'nearest'?"; empty when none is near.
+[[nodiscard]] inline std::string didYouMean(const std::string& found, const std::vector<std::string>& known) {
+  const auto nearest = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
+    return editDistance(found, a) < editDistance(found, b);
+  });
+  // Beyond half the word a suggestion would be a guess.
+  const bool is_near =
+      nearest != known.end() && editDistance(found, *nearest) <= std::max<std::size_t>(1, nearest->size() / 2);
+  return is_near ? "; did you mean '" + *nearest + "'?" : "";
+}
+
 /// "unknown <kind> 'found'; did you mean 'nearest'? Known: a, b, c". Known names as given, in their order.
 [[nodiscard]] inline std::string unknownName(std::string_view kind, const std::string& found,
                                              const std::vector<std::string>& known) {
   std::string message = "unknown " + std::string(kind) + " '" + found + "'";
   if (known.empty()) return message + "; there are none";
-  const auto nearest = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
-    return editDistance(found, a) < editDistance(found, b);
-  });
-  // Beyond half the word a suggestion would be a guess.
-  const bool is_near = editDistance(found, *nearest) <= std::max<std::size_t>(1, nearest->size() / 2);
-  message += is_near ? "; did you mean '" + *nearest + "'? Known:" : "; known:";
+  const std::string suggestion = didYouMean(found, known);
+  message += suggestion.empty() ? "; known:" : suggestion + " Known:";
   for (const std::string& name : known) message += (&name == &known.front() ? " " : ", ") + name;
   return message;
 }

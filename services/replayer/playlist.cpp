@@ -95,9 +95,10 @@ void Playlist::seek(std::uint64_t log_time_ns) {
   cursor_.emplace(reader_.messages(filter));
 }
 
-bool Playlist::hasTopic(const std::string& recorded_name) const {
-  return std::any_of(endpoints_.begin(), endpoints_.end(),
-                     [&](const auto& entry) { return reader_.channels().at(entry.first).topic == recorded_name; });
+std::vector<std::string> Playlist::topics() const {
+  std::set<std::string> names;
+  for (const auto& [id, endpoint] : endpoints_) names.insert(reader_.channels().at(id).topic);
+  return {names.begin(), names.end()};
 }
 
 std::uint64_t Playlist::duration() const {

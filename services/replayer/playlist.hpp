@@ -31,8 +31,8 @@ class Playlist {
 
   /// The writers that stand in for the recorded ones.
   [[nodiscard]] const std::map<mcap::ChannelId, dds::EndpointOptions>& endpoints() const { return endpoints_; }
-  /// Whether one of them stands in for a writer of this topic, as it was recorded.
-  [[nodiscard]] bool hasTopic(const std::string& recorded_name) const;
+  /// Their topics, as they were recorded, sorted.
+  [[nodiscard]] std::vector<std::string> topics() const;
   [[nodiscard]] std::uint64_t total() const { return total_; }  // messages from the first to the last time
   /// Log time of the recording's first message [ns], and from there to its last one; positions count from the first.
   [[nodiscard]] std::uint64_t startTime() const { return reader_.statistics().start_time_ns; }

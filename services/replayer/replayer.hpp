@@ -71,6 +71,7 @@ class Replayer {
   void serve();
   void obey(const msg::ReplayRequest& request);
   [[nodiscard]] std::string refusalOf(const msg::ReplayRequest& request) const;
+  [[nodiscard]] std::string objectionTo(const std::string& topic) const;
   void seek(std::uint64_t position_ns);
   void endStep(const std::string& why_short);
   void answer(std::uint64_t request_id, const std::string& refusal);

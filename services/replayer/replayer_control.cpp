@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/nearest_name.hpp"
 #include "replayer.hpp"
 
 namespace baton {
@@ -24,16 +25,20 @@ void Replayer::serve() {
   for (const Key key : terminal_->keys()) obey(key);
 }
 
+/// Steps may be counted by any topic that is replayed.
+std::string Replayer::objectionTo(const std::string& topic) const {
+  const std::vector<std::string> known = playlist_.topics();
+  if (topic.empty() || std::ranges::binary_search(known, topic)) return "";
+  return "expected a topic that is replayed, found " + topic + didYouMean(topic, known);
+}
+
 /// Empty when it can be done.
 std::string Replayer::refusalOf(const msg::ReplayRequest& request) const {
   switch (request.action()) {
     case msg::REPLAY_STEP:
       if (phase_ == Phase::kWaiting) return "it waits for " + waits_for_;
       if (request.messages() == 0) return "expected at least one message";
-      if (request.topic().size() > 0 && !playlist_.hasTopic(request.topic().c_str())) {
-        return std::string("expected a topic that is replayed, found ") + request.topic().c_str();
-      }
-      return "";
+      return objectionTo(request.topic().c_str());
     case msg::REPLAY_SEEK: {
       const std::int64_t from_ns = static_cast<std::int64_t>(playlist_.firstPosition());
       const std::int64_t to_ns = static_cast<std::int64_t>(playlist_.lastPosition());

@@ -124,6 +124,9 @@ TEST_F(ReplayControl, StepsExactlySoManyAndAPauseHolds) {
   // Two messages on "tens": behind 9 and behind 19.
   EXPECT_EQ(player({"step", "2", "--topic", "tens"}).at("messages"), 22);
   EXPECT_TRUE(listener.hears(range(0, 20)));
+  const Finished misspelt = bench_.baton({"player", "step", "--topic", "number"});
+  EXPECT_EQ(misspelt.exit_code, 1);
+  EXPECT_NE(misspelt.out.find("found number; did you mean 'numbers'?"), std::string::npos) << misspelt.out;
 
   player({"resume"});
   ASSERT_TRUE(eventually([&] { return listener.numbers().size() > 100; }));

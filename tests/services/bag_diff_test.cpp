@@ -208,6 +208,13 @@ TEST_F(BagDiff, RefusesRulesThatAreAboutNothing) {
     EXPECT_THROW((void)diff(a, a, request), UsageError);
   }
   EXPECT_THROW((void)diff([](SmallRecording&) {}, [](SmallRecording&) {}), UsageError);
+  try {
+    (void)diff(a, a, {.ignored = {"joint_comand"}});
+    ADD_FAILURE() << "expected a UsageError, found none";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("found 'joint_comand'; did you mean 'joint_command'?"), std::string::npos)
+        << error.what();
+  }
 }
 
 // --- two messages

@@ -114,7 +114,8 @@ class Differ {
       if (!isCompared(name)) diff_.left_out.push_back(name);
     }
     if (const std::vector<std::string> unmet = rules_.unmet(); !unmet.empty()) {
-      throw UsageError("expected a topic or field that is compared, found '" + unmet.front() + "'");
+      throw UsageError("expected a topic or field that is compared, found '" + unmet.front() + "'" +
+                       didYouMean(unmet.front(), names));
     }
   }
 
