@@ -1,5 +1,6 @@
 #include "endpoints.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <sstream>
@@ -43,13 +44,20 @@ Number numberOf(const std::map<std::string, std::string>& values, const std::str
   return error == std::errc::result_out_of_range ? std::numeric_limits<Number>::max() : number;
 }
 
+/// A promise to readers. What comes after less than this nobody keeps: a timer of DDS would only run out without end.
+std::int64_t promiseOf(const std::map<std::string, std::string>& qos, const std::string& key) {
+  constexpr std::int64_t kShortest_ns = 100'000;
+  const auto promised_ns = numberOf<std::int64_t>(qos, key);
+  return promised_ns == 0 ? 0 : std::max(promised_ns, kShortest_ns);
+}
+
 dds::Liveliness livelinessOf(const std::map<std::string, std::string>& qos) {
   using Kind = dds::Liveliness::Kind;
   const std::string kind = valueOf(qos, "liveliness");
   return {.kind = kind == "manual_by_topic"         ? Kind::kManualByTopic
                   : kind == "manual_by_participant" ? Kind::kManualByParticipant
                                                     : Kind::kAutomatic,
-          .lease_ns = numberOf<std::int64_t>(qos, "lease_ns")};
+          .lease_ns = promiseOf(qos, "lease_ns")};
 }
 
 }  // namespace
@@ -73,7 +81,7 @@ dds::EndpointOptions replayEndpoint(const mcap::Channel& channel, const mcap::Sc
           .keyed = valueOf(qos, "keyed") == "true",
           .exclusive_ownership = valueOf(qos, "ownership") == "exclusive",
           .best_effort = valueOf(qos, "reliability") == "best_effort",
-          .deadline_ns = numberOf<std::int64_t>(qos, "deadline_ns"),
+          .deadline_ns = promiseOf(qos, "deadline_ns"),
           .liveliness = livelinessOf(qos),
           .ownership_strength = numberOf<std::uint32_t>(qos, "ownership_strength")};
 }

@@ -75,6 +75,16 @@ TEST(ReplayEndpoint, BelievesNoNumberBeyondItsRange) {
   }
 }
 
+TEST(ReplayEndpoint, PromisesNothingThatNobodyCanKeep) {
+  mcap::Channel channel = recordedChannel("volatile");
+  for (const char* text : {"1", "2", "99999"}) {
+    channel.metadata["qos"] = std::string("deadline_ns: ") + text + "\nlease_ns: " + text + "\n";
+    const dds::EndpointOptions endpoint = replayEndpoint(channel, nullptr, {});
+    EXPECT_EQ(endpoint.deadline_ns, 100'000) << text;
+    EXPECT_EQ(endpoint.liveliness.lease_ns, 100'000) << text;
+  }
+}
+
 TEST(ReplayEndpoint, ReadsTheTruthValuesThatEprosimasRecorderWrites) {
   mcap::Channel channel = recordedChannel("volatile");
   channel.metadata["qos"] = "reliability: true\ndurability: false\nownership: true\nkeyed: true";
