@@ -83,7 +83,10 @@ class Service {
   /// This service takes no part in the steps: at the end of the run nothing more is waited for.
   void answersNoSteps() { answers_steps_ = false; }
   /// Each word of the plant on the run, before its end has consequences here. From handlers; not in the plant itself.
-  void onSimStatus(std::function<void(const msg::SimStatus&)> handler) { on_sim_status_ = std::move(handler); }
+  void onSimStatus(std::function<void(const msg::SimStatus&)> handler) {
+    const std::lock_guard lock(mutex_);  // the plant may speak already
+    on_sim_status_ = std::move(handler);
+  }
   /// Called once on the executor when the run has ended and this service's manifest is out.
   void onEnd(std::function<void()> handler) { on_end_ = std::move(handler); }
 
@@ -112,7 +115,7 @@ class Service {
   void giveWay(const std::string& why);
   /// Matched with everybody it needs; any thread.
   [[nodiscard]] bool isReady() const { return ready_; }
-  /// Who is missing for that, by topic; from the executor.
+  /// Who is missing for that, by topic; any thread, once all endpoints are declared.
   [[nodiscard]] std::string missing() const { return barrier_.missing(); }
   /// Called once on the executor when the service becomes ready.
   void onReady(std::function<void()> handler) { on_ready_ = std::move(handler); }

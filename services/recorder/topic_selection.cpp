@@ -21,11 +21,9 @@ bool TopicSelection::isRecorded(const std::string& topic) const {
 
 std::vector<std::string> TopicSelection::unmatched(const std::set<std::string>& found) const {
   std::vector<std::string> result;
-  for (const auto* patterns : {&topics, &except}) {
-    for (const std::string& pattern : *patterns) {
-      const auto matches = [&](const std::string& topic) { return isMatch(pattern, topic); };
-      if (std::none_of(found.begin(), found.end(), matches)) result.push_back(pattern);
-    }
+  for (const std::string& pattern : topics) {
+    const auto matches = [&](const std::string& topic) { return isMatch(pattern, topic); };
+    if (std::none_of(found.begin(), found.end(), matches)) result.push_back(pattern);
   }
   return result;
 }

@@ -13,7 +13,8 @@ struct TopicSelection {
   std::vector<std::string> except;
 
   [[nodiscard]] bool isRecorded(const std::string& topic) const;
-  /// The patterns, of both kinds, that none of these topics matches: each may be a slip of the pen.
+  /// What of `topics` none of these matches: each may be a slip of the pen, and costs what was to be recorded. (What is
+  /// to be left out and is not there may just have had no writer.)
   [[nodiscard]] std::vector<std::string> unmatched(const std::set<std::string>& found) const;
 };
 

@@ -124,10 +124,10 @@ TEST(Record, OnlyTheTopicsThatAreNamedAreRecorded) {
 TEST(Record, APatternThatNoTopicMatchesIsTold) {
   const RecordedRun run("topics: [plant_state, contcat], except: ['*_stats']");
   ASSERT_EQ(run.result.at("exit_code"), 0) << run.result;
-  EXPECT_NE(run.result.at("recording").at("summary").get<std::string>().find("no topic matches contcat, *_stats"),
+  EXPECT_NE(run.result.at("recording").at("summary").get<std::string>().find("no topic matches contcat"),
             std::string::npos)
       << run.result;
-  EXPECT_EQ(certificateOf(run.file).at("unmatched"), Json::parse(R"(["contcat", "*_stats"])"));
+  EXPECT_EQ(certificateOf(run.file).at("unmatched"), Json::parse(R"(["contcat"])"));
   const Finished logs = run.bench.baton({"logs", "recorder"});
   EXPECT_NE(logs.out.find("expected a pattern that matches a topic, found contcat"), std::string::npos) << logs.out;
   expectVerified(run.bench, {run.file});

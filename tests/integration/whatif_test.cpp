@@ -89,12 +89,15 @@ TEST(WhatIf, WritesADrawingAndCommandsThatOtherToolsRead) {
   EXPECT_TRUE(cut.at("exact")) << cut;
 }
 
+/// Without an environment.
+constexpr const char* kFree =
+    "name: free\nrobot: rpp\nstep_s: 0.0005\nsubsteps: 2\nduration_s: 0.2\n"
+    "trajectory: {waypoints: [{time_s: 0, position: [0, 0, 0]}]}\n"
+    "controllers: [{name: only, law: joint_inverse_dynamics}]\nactive: only\n";
+
 TEST(WhatIf, SaysWhatItNeeds) {
   const Bench bench;
-  const std::string file = recorded(bench,
-                                    "name: free\nrobot: rpp\nstep_s: 0.0005\nsubsteps: 2\nduration_s: 0.2\n"
-                                    "trajectory: {waypoints: [{time_s: 0, position: [0, 0, 0]}]}\n"
-                                    "controllers: [{name: only, law: joint_inverse_dynamics}]\nactive: only\n");
+  const std::string file = recorded(bench, kFree);
   const auto exitCode = [&](std::vector<std::string> arguments, const std::string& word) {
     arguments.insert(arguments.begin(), "whatif");
     const Finished finished = bench.baton(arguments);
@@ -136,6 +139,14 @@ TEST(WhatIf, AndTheHashOfARunNameTheTopicThatARecordingIsWithout) {
   const Finished alone = bench.baton({"whatif", cut, "--law", "joint_pd"});
   EXPECT_EQ(alone.exit_code, 0) << alone.err;
   EXPECT_NE(alone.out.find("the recording is without the topic joint_command"), std::string::npos) << alone.out;
+  fs::remove(file);
+  fs::remove(cut);
+  // What a run had nothing to say on is not missed in such a copy: no contact, no reset, no decision.
+  const std::string free_run = recorded(bench, kFree);
+  ASSERT_EQ(bench.baton({"bag", "cut", free_run, cut, "--topics", "plant_state,reference,joint_command"}).exit_code, 0);
+  EXPECT_EQ(bench.baton({"bag", "hash", free_run, cut}).exit_code, 0);
+  const Finished rerun = bench.baton({"rerun", cut});
+  EXPECT_EQ(rerun.exit_code, 0) << rerun.out << rerun.err;
 }
 
 }  // namespace

@@ -34,8 +34,7 @@ TEST(TopicSelection, APatternReachesOverSlashes) {
 
 TEST(TopicSelection, TellsWhichPatternsMatchNothing) {
   const TopicSelection selection{{"plant_*", "contcat"}, {"*_status", "refrence"}};
-  EXPECT_EQ(selection.unmatched({"plant_state", "contact", "sim_status"}),
-            (std::vector<std::string>{"contcat", "refrence"}));
+  EXPECT_EQ(selection.unmatched({"plant_state", "contact", "sim_status"}), std::vector<std::string>{"contcat"});
   EXPECT_TRUE(TopicSelection{}.unmatched({"contact"}).empty());
 }
 

@@ -40,12 +40,13 @@ constexpr const char* kHead = R"(<!doctype html>
 constexpr const char* kIntroduction = R"(<h1>The report's figures, run again</h1>
 <p>Each figure below comes from a recording of the distributed system: plant, wall, trajectory and controller as
 processes of their own on DDS, in lockstep. <em>Our runs</em> says whether what was measured agrees with what theory
-predicts, number by number. Predictions are made without the recording and without the law's own code, from the
-scenario: in closed form; as a balance at rest, solved by Newton's iteration; or by integrating the continuous equation
-of arm, law and wall with steps of its own. The arm's B, C and g are the same functions on both sides; tests hold them
-against Newton-Euler and orocos-kdl. Only where it does is the report's claim judged: it <em>holds</em> when all that it says
+predicts, number by number. Only where it does is the report's claim judged: it <em>holds</em> when all that it says
 was measured so, <em>holds in part</em> when some of it was and the rest was not, and <em>is wrong</em> when none of
 it was.</p>
+<p>Predictions are made from the scenario and without the recorded motion: in closed form; as a balance at rest, solved by
+Newton's iteration (of several false rests, the one that the run is at); or by integrating the continuous equation of arm,
+law and wall with steps of its own. What describes the arm, B, C, g and Y, are the same functions on both sides; tests
+hold them against Newton-Euler and orocos-kdl.</p>
 )";
 
 constexpr const char* kSymbols =
@@ -177,7 +178,7 @@ std::string standing(const Erratum& erratum, const std::vector<FigureResult>& re
 void writeErrata(std::ofstream& page, const std::vector<Erratum>& errata, const std::vector<FigureResult>& results) {
   page << "<h2 id='errata'>What the report has wrong</h2>\n"
           "<p><em>Established</em>: both sides were run or measured in the figures named, and all their numbers agree. "
-          "<em>What is right agrees with theory</em>: what is printed cannot be run, what is right was. <em>No "
+          "<em>What is right agrees with theory</em>: what is printed was not run, what is right was. <em>No "
           "figure</em>: "
           "the evidence is a test, or reading.</p>\n"
           "<table><tr><th>where<th>printed<th>right<th>evidence<th>our runs\n";

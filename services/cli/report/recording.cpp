@@ -11,16 +11,22 @@
 namespace baton {
 namespace {
 
-/// By the certificate, or by the copy that took only some topics.
+/// By the certificate, or by a copy that took only some topics of one that had it.
 bool isLeftOut(const mcap::Reader& reader, const std::string& topic) {
-  if (!metadataValue(reader, "baton.cut", "topics").empty()) {
-    return std::ranges::count(mcap::topicNames(reader), topic) == 0;
-  }
   auto text = attachmentText(reader, "certificate.json");
   if (!text) text = attachmentText(reader, "original_certificate.json");
   const nlohmann::json certificate = nlohmann::json::parse(text.value_or(""), nullptr, false);
-  const auto left_out = certificate.is_object() ? certificate.find("left_out") : certificate.end();
-  return left_out != certificate.end() && std::count(left_out->begin(), left_out->end(), nlohmann::json(topic)) > 0;
+  const auto listOf = [&](const char* key) {
+    const auto list = certificate.is_object() ? certificate.find(key) : certificate.end();
+    return list != certificate.end() && list->is_array() ? *list : nlohmann::json::array();
+  };
+  const nlohmann::json left_out = listOf("left_out"), streams = listOf("streams");
+  if (std::count(left_out.begin(), left_out.end(), nlohmann::json(topic)) > 0) return true;
+  if (metadataValue(reader, "baton.cut", "topics").empty()) return false;
+  return std::any_of(streams.begin(), streams.end(), [&](const nlohmann::json& row) {
+    return row.is_object() && row.value("topic", nlohmann::json()) == topic &&
+           row.value("count", nlohmann::json()) != nlohmann::json(0);
+  });
 }
 
 [[noreturn]] void missTopic(const std::string& topic, const std::filesystem::path& file) {
@@ -59,7 +65,10 @@ bool hasTopic(const mcap::Reader& reader, const std::string& topic) {
 }
 
 void expectTopic(const mcap::Reader& reader, const std::string& topic, const std::filesystem::path& file) {
-  if (!hasTopic(reader, topic)) missTopic(topic, file);
+  expectNotLeftOut(reader, topic, file);
+  if (!hasTopic(reader, topic)) {
+    throw UsageError(file.string() + ": expected the recording of a run, with messages of " + topic + ", found none");
+  }
 }
 
 void expectNotLeftOut(const mcap::Reader& reader, const std::string& topic, const std::filesystem::path& file) {

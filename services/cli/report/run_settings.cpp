@@ -8,6 +8,7 @@
 
 #include "control/law.hpp"
 #include "messages/parameters.hpp"
+#include "theory_tools.hpp"
 #include "trajectory/trajectory.hpp"
 
 namespace baton {
@@ -32,13 +33,15 @@ std::string row(const Vector& values) {
 }
 
 std::string motionText(const Scenario& scenario) {
-  const Trajectory trajectory(scenario.robot, scenario.trajectory);
+  const Trajectory trajectory = theory::quietTrajectory(scenario);
   Reference goal;
   const double end_s = static_cast<double>(scenario.end_step) * scenario.stepSeconds();
   trajectory.evaluate(end_s, goal);
   std::string text = "q from " + row(scenario.start_q);
-  if (goal.q.size() > 0) text += ", q_d in the end " + row(goal.q);
-  if (goal.has_task) text += ", x_d " + row(goal.X_WE.p);
+  if (std::isfinite(trajectory.endTime())) {  // else it swings on, and has no goal
+    if (goal.q.size() > 0) text += ", q_d in the end " + row(goal.q);
+    if (goal.has_task) text += ", x_d " + row(goal.X_WE.p);
+  }
   if (goal.has_task && !goal.h_d.isZero(0.0)) text += ", f_d " + row(Vector3(goal.h_d.head<3>()));
   return text + fmt::format(", {:g} s", end_s);
 }

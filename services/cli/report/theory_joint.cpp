@@ -287,8 +287,8 @@ Checks settling(const Inputs& in) {
     const double allowed = 8.0 * dt_s;
     const std::string name = jointName(i);
     checks.push_back(within("time in which " + name + " settles", "s", settled(i), measured_settled(i), allowed));
-    checks.push_back(
-        within("overshoot of " + name, jointUnit(robot, i), beyond(i), measured_beyond(i), fastest(i) * allowed));
+    checks.push_back(within("overshoot of " + name, jointUnit(robot, i), beyond(i), measured_beyond(i),
+                            beyond(i) > 0.0 ? fastest(i) * allowed : 1e-6));
     if (std::isfinite(robot.joints[static_cast<std::size_t>(i)].effort_limit))
       checks.push_back(within("time of " + name + " at its limit", "s", predicted(i), measured(i), allowed));
   }

@@ -265,6 +265,12 @@ TEST_F(LedgerTest, AgreesWithItsOwnCertificateAndWithNoOther) {
       EXPECT_FALSE(disagreementsWith([&](Json& text) { text["streams"][i].erase(name); }).empty()) << name;
     }
     EXPECT_TRUE(mentions(disagreementsWith([&](Json& text) { text["streams"].erase(i); }), "does not know"));
+    const std::uint64_t first = rows[i]["first_sequence"];
+    const auto lostBefore = [&](std::uint64_t lost) {
+      return disagreementsWith([&](Json& text) { text["streams"][i]["lost_before"] = lost; });
+    };
+    EXPECT_TRUE(mentions(lostBefore(first), "more was lost before its first sample than there was"));
+    EXPECT_TRUE(lostBefore(first - 1).empty());
   }
   EXPECT_TRUE(mentions(disagreementsWith([&](Json& text) {
                          text["streams"].push_back(rows[0]);
