@@ -63,7 +63,7 @@ control asks for, alone in Figures 49 to 51, as an addition to x_d in 53 and 54;
 <em>Held</em>, <em>late</em> and <em>derivatives</em>, of a force: kept over a step; kept from the step before; told with
 its slopes over position and velocity, so that it follows the motion within the step.</p>
 <p>The report prints no masses and inertias; those used here are identified from the digits of B, g and tau that it
-does print, with the double count in its B11 (below, "What the report has wrong"). That these digits come out again proves nothing; motions, forces and steady states do. The tolerance of
+does print, with the double count in its B11 (see its errors, below). That these digits come out again proves nothing; motions, forces and steady states do. The tolerance of
 a number at rest is 1e-4 of it, or 1e-6 where theory says zero; on the way it covers what the step of the run is
 known to cost.</p>
 )";
@@ -178,7 +178,7 @@ std::string standing(const Erratum& erratum, const std::vector<FigureResult>& re
 void writeErrata(std::ofstream& page, const std::vector<Erratum>& errata, const std::vector<FigureResult>& results) {
   page << "<h2 id='errata'>What the report has wrong</h2>\n"
           "<p><em>Established</em>: both sides were run or measured in the figures named, and all their numbers agree. "
-          "<em>What is right agrees with theory</em>: what is printed was not run, what is right was. <em>No "
+          "<em>What is right agrees with theory:</em> what is printed was not run, what is right was. <em>No "
           "figure</em>: "
           "the evidence is a test, or reading.</p>\n"
           "<table><tr><th>where<th>printed<th>right<th>evidence<th>our runs\n";
