@@ -75,6 +75,11 @@ nlohmann::ordered_json runFrom(const CheckpointSet& set, const fs::path& folder,
     request.checkpoint = checkpoint.string();
   }
   request.scenario = (folder / "scenario.yaml").string();
+  if (loadScenario(request.scenario).end_step == 0) {
+    std::fprintf(stderr,
+                 "baton: the scenario has no end, so the branch goes on until Ctrl-C or `baton down`; "
+                 "--set duration_s=S gives it one\n");
+  }
   RunSession session(request, true);
   exit_code = runToTheEnd(session);
   return session.result();

@@ -1,6 +1,8 @@
 #include "cell_target.hpp"
 
+#include <chrono>
 #include <cmath>
+#include <tuple>
 
 #include "run_commands.hpp"
 
@@ -14,11 +16,13 @@ CLI::App* addCellCommand(CLI::App& app, CellTarget& target, const char* name, co
 }
 
 msg::SimStatus simStatus(CellClient& client) {
-  const auto status = client.latest(dds::topics::kSimStatus);
-  if (!status) {
-    throw UnavailableError("the plant of run " + client.info().run + " says nothing; see `baton logs plant`");
+  constexpr std::chrono::seconds kLook{2};
+  for (std::chrono::seconds waited{0}; waited < CellClient::kPatience; waited += kLook) {
+    if (const auto status = client.latest(dds::topics::kSimStatus, kLook)) return *status;
+    std::ignore =
+        CellClient::find(client.info().domain, client.info().cell);  // throws when the run has ended meanwhile
   }
-  return *status;
+  throw UnavailableError("the plant of run " + client.info().run + " says nothing; see `baton logs plant`");
 }
 
 std::uint64_t stepToCome(std::uint64_t step) {

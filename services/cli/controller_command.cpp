@@ -58,7 +58,8 @@ void launch(const CellTarget& target, const LaunchWish& wish, msg::LaunchAction 
   if (!reply) throw UnavailableError("the run's supervisor did not answer; see `baton logs supervisor`");
   const bool starts = action == msg::LAUNCH_START;
   const bool is_done = reply->accepted() && standsBy(client, wish.name, starts);
-  exit_code = is_done ? ExitCode::kOk : ExitCode::kFailed;
+  const bool is_to_come = starts && reply->accepted() && !is_done && simStatus(client).state() == msg::SIM_STATE_PAUSED;
+  exit_code = is_done ? ExitCode::kOk : is_to_come ? ExitCode::kUnavailable : ExitCode::kFailed;
   if (target.json) {
     std::cout << toText(Json{{"accepted", reply->accepted()},
                              {"done", is_done},
@@ -67,6 +68,9 @@ void launch(const CellTarget& target, const LaunchWish& wish, msg::LaunchAction 
               << '\n';
   } else if (!reply->accepted()) {
     std::printf("refused: %s\n", reply->reason().c_str());
+  } else if (is_to_come) {
+    std::printf("%s, process %d, joins when the run goes on: it is paused\n", wish.name.c_str(),
+                static_cast<int>(reply->pid()));
   } else if (!is_done) {
     std::printf("%s, process %d, %s; see `baton logs %s`\n", wish.name.c_str(), static_cast<int>(reply->pid()),
                 starts ? "does not stand by yet" : "does not end; stop it again to kill it", wish.name.c_str());
