@@ -46,7 +46,7 @@ bool Ring::push(const Sample& sample) {
     end_ = std::exchange(next_, 0);
   }
   std::memcpy(memory_.get() + next_, static_cast<const void*>(&sample), sizeof sample);
-  std::memcpy(memory_.get() + next_ + sizeof sample, sample.payload.data(), sample.payload.size());
+  std::ranges::copy(sample.payload, memory_.get() + next_ + sizeof sample);  // of none, memcpy would want an address
   next_ += size;
   ++count_;
   used_ += size;
