@@ -54,10 +54,11 @@ void printResult(const nlohmann::ordered_json& result) {
   if (const std::string reason = result.at("reason"); !reason.empty()) std::printf(" (%s)", reason.c_str());
   std::printf("\n");
   if (result.at("startup_s").get<double>() >= 0.0) {
-    const std::uint64_t steps = result.at("steps"), moved = steps - result.at("first_step").get<std::uint64_t>();
+    double motion_s = result.at("sim_time_s");
+    if (const auto first = result.value("first_step", std::uint64_t{0}); first > 0)  // it went on from there
+      motion_s -= static_cast<double>(first) * result.at("step_ns").get<double>() * 1e-9;
     std::printf("steps       %llu, %.6g s of motion in %.2f s: %.2f x real time, started in %.2f s\n",
-                static_cast<unsigned long long>(steps),
-                static_cast<double>(moved) * result.at("step_ns").get<double>() * 1e-9, elapsed_s,
+                static_cast<unsigned long long>(result.at("steps")), motion_s, elapsed_s,
                 result.at("real_time_ratio").get<double>(), result.at("startup_s").get<double>());
   }
   std::printf("hash        %s: runs with the same one have the same bytes, step by step\n",

@@ -105,8 +105,8 @@ void Supervisor::judge(const msg::SwapOutcome& swap) {
 
 void Supervisor::startAll() {
   const Scenario& scenario = scenario_;
-  // Each waits for whom it needs, so any order does. But DDS sends a sample to its readers in the order in which it found
-  // them, and for the recorder no step waits.
+  // Each waits for whom it needs, so any order does. But DDS sends a sample to its readers in the order in which it
+  // found them, and for the recorder no step waits.
   if (scenario.hasEnvironment()) start(kEnvironmentName, kEnvironmentName, "");
   start(kTrajectoryName, kTrajectoryName, "");
   for (const ControllerConfig& controller : scenario.controllers) start("controller", controller.name, controller.law);
@@ -220,8 +220,10 @@ void Supervisor::childFailed(Child& child, const Child::End& end) {
     if (is_restarted) restart(name);
     return;
   }
+  // A refusal has a reason of its own, also when what it refuses was found late.
+  const std::string reason = ": " + lastError(child.command().log_file);
   fail(isRefusal(end) ? static_cast<ExitCode>(end.value) : ExitCode::kFailed,
-       has_started ? why : name + " could not start (" + end.text() + "): " + lastError(child.command().log_file));
+       !has_started ? name + " could not start (" + end.text() + ")" + reason : why + (isRefusal(end) ? reason : ""));
   spdlog::error("{}\n{}", reason_, lastLines(child.command().log_file, 5));
   if (name == kPlantName) {
     // Nobody else would end the run for the others. Written without the lock: our own reader is called from within.

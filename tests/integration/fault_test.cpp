@@ -151,6 +151,17 @@ TEST(Fault, ALeftOverPlantKeepsItsCell) {
   const int old = bench.start(
       "baton-plant",
       {"--scenario", scenario, "--run", "20000101-000000-0000", "--domain", std::to_string(bench.domain())}, "old.log");
+  {
+    dds::Participant onlooker({.domain = bench.domain(),
+                               .partition = "lab/onlooker",
+                               .cell = "lab",
+                               .run = "onlooker",
+                               .service = "onlooker"});
+    ASSERT_TRUE(eventually([&] {
+      const std::vector<dds::Peer> peers = onlooker.peers();
+      return std::any_of(peers.begin(), peers.end(), [](const dds::Peer& peer) { return peer.service == "plant"; });
+    })) << "it is there";
+  }
   const Finished refused = bench.baton({"run", scenario});
   EXPECT_EQ(refused.exit_code, 3) << refused.out << refused.err;
   EXPECT_NE((refused.out + refused.err).find("20000101-000000-0000"), std::string::npos) << refused.out << refused.err;
