@@ -68,6 +68,8 @@ class Ledger {
   void giveUpOn(const std::string& service) { given_up_.insert(service); }
   /// Nothing more is to be expected: every manifest that still can come has, and every stream they name is here, whole.
   [[nodiscard]] bool isSettled() const;
+  /// Whether every writer of what the services count has a manifest; that of one that nobody waits for may still come.
+  [[nodiscard]] bool isVouchedFor() const { return unvouched(vouchedFor()).empty(); }
   /// Every service has sent its manifest, every stream is vouched for by one, and is here, whole.
   [[nodiscard]] bool isComplete() const { return problems().empty(); }
   /// One sentence for each thing that is missing.

@@ -19,7 +19,8 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kIdle = std::chrono::milliseconds(10);  // how long a sample may wait before it is written
 constexpr auto kTend = std::chrono::seconds(1);        // what a killed recorder may take along
 constexpr std::size_t kMaxStatusText = 199, kMaxTopicText = 64, kMaxText = 399;
-constexpr auto kManifestPatience = std::chrono::seconds(5);  // for what is still on its way when the run has ended
+// When the run has ended: for what is still on its way, and for the word of those that are not waited for.
+constexpr std::chrono::milliseconds kManifestPatience{5000}, kStragglerPatience{500};
 
 Stream::Role roleOf(const std::string& topic) {
   if (topic == dds::topics::kRewind.name) return Stream::Role::kRewind;
@@ -288,7 +289,8 @@ bool RecordingSession::isDone() {
   for (const std::string& topic : topics_.leftOut()) ledger_.leaveOut(topic);
   if (progress_at_end_ != progress_) moved_ = Clock::now();
   progress_at_end_ = progress_;
-  return ledger_.isSettled() || Clock::now() - moved_ > kManifestPatience;
+  const auto patience = !ledger_.isSettled() ? kManifestPatience : kStragglerPatience;
+  return (ledger_.isSettled() && ledger_.isVouchedFor()) || Clock::now() - moved_ > patience;
 }
 
 void RecordingSession::publishStatus() {

@@ -93,6 +93,7 @@ TEST_F(LedgerTest, ARunThatArrivedWholeIsComplete) {
   ledger_.addManifest(manifestOf("plant", {&state_, &status_}));  // status_ sent nothing
   ledger_.addManifest(manifestOf("environment", {&contact_}));
   EXPECT_TRUE(ledger_.isSettled());
+  EXPECT_TRUE(ledger_.isVouchedFor());
   EXPECT_TRUE(ledger_.isComplete());
   EXPECT_TRUE(ledger_.problems().empty());
   EXPECT_EQ(ledger_.missing(), 0u);
@@ -422,6 +423,19 @@ TEST_F(LedgerTest, GapsOfAWriterNobodyVouchesForAreProblems) {
   ledger_.addManifest(manifestOf("plant", {}));
   ledger_.addManifest(manifestOf("environment", {}));
   EXPECT_TRUE(mentions(ledger_.problems(), "turtle/pose"));
+}
+
+TEST_F(LedgerTest, TheWordOfOneThatNobodyWaitsForMayStillCome) {
+  Sender event_of_plant{"event", guidOf(7)}, event_of_another{"event", guidOf(8)};
+  transmit(event_of_plant, 2);
+  transmit(event_of_another, 1);
+  ledger_.addManifest(manifestOf("plant", {&event_of_plant}));
+  ledger_.addManifest(manifestOf("environment", {}));
+  EXPECT_TRUE(ledger_.isSettled());
+  EXPECT_FALSE(ledger_.isVouchedFor());
+  ledger_.addManifest(manifestOf("supervisor", {&event_of_another}));
+  EXPECT_TRUE(ledger_.isVouchedFor());
+  EXPECT_TRUE(ledger_.isComplete());
 }
 
 TEST_F(LedgerTest, WhatCannotBeRecordedIsAProblem) {
