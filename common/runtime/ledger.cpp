@@ -262,14 +262,17 @@ std::vector<std::string> Ledger::disagreements(const std::string& certificate_te
     for (const auto& [key, row] : rowsOf(ours)) {
       const std::string what = key.first + " of writer " + key.second;
       const Json their_row = std::exchange(their_rows[key], {});
-      if (their_row.is_null()) result.push_back("the certificate does not know " + what);
-      if (!their_row.is_null() && row.at("count") > 0 &&
+      if (their_row.is_null()) {
+        result.push_back("the certificate does not know " + what);
+        continue;
+      }
+      if (row.at("count") > 0 &&
           their_row.value("lost_before", std::uint64_t{0}) >= row.at("first_sequence").get<std::uint64_t>()) {
         result.push_back("the certificate says of " + what +
                          " that more was lost before its first sample than there was");
       }
       for (const auto& [field, value] : row.items()) {
-        if (their_row.is_null() || their_row.value(field, Json()) == value) continue;
+        if (their_row.value(field, Json()) == value) continue;
         result.push_back("the certificate says otherwise of " + what + ": " + field + " " +
                          their_row.value(field, Json()).dump() + ", the bytes give " + value.dump());
         break;

@@ -289,8 +289,9 @@ bool RecordingSession::isDone() {
   for (const std::string& topic : topics_.leftOut()) ledger_.leaveOut(topic);
   if (progress_at_end_ != progress_) moved_ = Clock::now();
   progress_at_end_ = progress_;
-  const auto patience = !ledger_.isSettled() ? kManifestPatience : kStragglerPatience;
-  return (ledger_.isSettled() && ledger_.isVouchedFor()) || Clock::now() - moved_ > patience;
+  const bool is_settled = ledger_.isSettled();
+  if (is_settled && ledger_.isVouchedFor()) return true;
+  return Clock::now() - moved_ > (is_settled ? kStragglerPatience : kManifestPatience);
 }
 
 void RecordingSession::publishStatus() {
