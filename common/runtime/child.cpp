@@ -2,10 +2,16 @@
 
 #include <fcntl.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <boost/process/v2/process.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/process/args.hpp>
+#include <boost/process/child.hpp>
+#include <boost/process/error.hpp>
+#include <boost/process/exe.hpp>
+#include <boost/process/extend.hpp>
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -13,63 +19,79 @@
 #include "base/error.hpp"
 
 namespace baton {
-namespace process = boost::process::v2;
+namespace asio = boost::asio;
+namespace process = boost::process;
 namespace {
 
 /// Runs in the child between fork and exec.
-struct ChildSetup {
+struct ChildSetup : process::extend::handler {
   int log;
   pid_t parent;
+  ChildSetup(int log_descriptor, pid_t parent_id) : log(log_descriptor), parent(parent_id) {}
 
-  template <class Launcher>
+  template <class Executor>
   // NOLINTNEXTLINE(readability-identifier-naming): the name Boost looks for
-  boost::system::error_code on_exec_setup(Launcher&, const process::filesystem::path&, const char* const*) {
+  void on_exec_setup(Executor& executor) const {
     setpgid(0, 0);
     sigset_t none;
     sigemptyset(&none);
     sigprocmask(SIG_SETMASK, &none, nullptr);
     prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (getppid() != parent) raise(SIGTERM);  // it died before we asked to be told
+    if (getppid() != parent) raise(SIGTERM);  // it died before the line above
     const int nothing = open("/dev/null", O_RDONLY);
     if (nothing < 0 || dup2(nothing, STDIN_FILENO) < 0 || dup2(log, STDOUT_FILENO) < 0 ||
         dup2(log, STDERR_FILENO) < 0) {
-      return {errno, boost::system::system_category()};
+      executor.set_error(process::extend::get_last_error(), "standard streams");
     }
-    return {};
   }
 };
 
+/// A descriptor that becomes readable when the process ends. The system call itself, as older C libraries lack the
+/// function.
+int openPidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
+
 }  // namespace
 
+/// Boost.Process starts it. Its own way to wait for the end reaps children of the entire program on SIGCHLD, and Boost
+/// 1.74 has no other, so the end is waited for on a pidfd here.
 struct Child::Process {
-  process::process handle;
+  process::child handle;
+  asio::posix::stream_descriptor end;
 };
 
-Child::Child(boost::asio::io_context& executor, Command command, std::function<void(Child&, const End&)> on_end)
+Child::Child(asio::io_context& executor, Command command, std::function<void(Child&, const End&)> on_end)
     : command_(std::move(command)) {
   const int log = open(command_.log_file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (log < 0) {
     throw UnavailableError("cannot write the log " + command_.log_file.string() + ": " + std::strerror(errno));
   }
-  boost::system::error_code error;
-  process::process handle = process::default_process_launcher()(executor, error, command_.program.string(),
-                                                                command_.arguments, ChildSetup{log, getpid()});
+  std::error_code error;
+  process::child handle(process::exe = command_.program.string(), process::args = command_.arguments,
+                        ChildSetup(log, getpid()), error);
   close(log);
   if (error) throw UnavailableError("cannot start " + command_.program.string() + ": " + error.message());
-  process_ = std::make_unique<Process>(Process{std::move(handle)});
-  pid_ = process_->handle.id();
+  pid_ = handle.id();
+  const int pidfd = openPidfd(pid_);
+  if (pidfd < 0) {
+    const std::string reason = std::strerror(errno);
+    handle.terminate();
+    throw UnavailableError("cannot watch " + command_.program.string() + ": pidfd_open: " + reason);
+  }
+  process_ = std::make_unique<Process>(Process{std::move(handle), asio::posix::stream_descriptor(executor, pidfd)});
   is_running_ = true;
-  process_->handle.async_wait([this, on_end = std::move(on_end)](const boost::system::error_code& wait_error, int) {
+  process_->end.async_wait(asio::posix::stream_descriptor::wait_read, [this, on_end = std::move(on_end)](
+                                                                          const boost::system::error_code& wait_error) {
+    if (wait_error == asio::error::operation_aborted) return;  // the child is not wanted any more
     is_running_ = false;
-    if (wait_error) return on_end(*this, {false, 127});  // it cannot be watched any more
-    const int status = process_->handle.native_exit_code();
+    process_->end.close();
+    int status = 0;
+    if (wait_error || waitpid(pid_, &status, 0) != pid_) return on_end(*this, {false, 127});
+    process_->handle.detach();
     on_end(*this, WIFSIGNALED(status) ? End{true, WTERMSIG(status)} : End{false, WEXITSTATUS(status)});
   });
 }
 
-Child::~Child() {
-  if (is_running_) kill(pid_, SIGKILL);
-}
+Child::~Child() = default;  // Boost's handle kills and reaps a process that is still running
 
 void Child::signal(int number) const {
   if (is_running_) kill(pid_, number);
