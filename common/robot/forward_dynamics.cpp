@@ -1,6 +1,6 @@
 #include <Eigen/Cholesky>
-#include <cmath>
 
+#include "base/elementary.hpp"
 #include "robot/dynamics.hpp"
 
 namespace baton {
@@ -10,7 +10,7 @@ void frictionEffort(const RobotModel& model, const JointVector& qd, JointVector&
   for (int i = 0; i < model.size(); ++i) {
     const JointFriction& friction = model.joints[i].friction;
     tau_f(i) = friction.viscous * qd(i);
-    if (friction.coulomb > 0.0) tau_f(i) += friction.coulomb * std::tanh(qd(i) / friction.coulomb_velocity);
+    if (friction.coulomb > 0.0) tau_f(i) += friction.coulomb * elementary::tanh(qd(i) / friction.coulomb_velocity);
   }
 }
 

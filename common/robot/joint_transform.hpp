@@ -5,8 +5,7 @@
 /// sits on the joint, turns with the link, and its z axis is the joint's axis.
 #pragma once
 
-#include <cmath>
-
+#include "base/elementary.hpp"
 #include "base/types.hpp"
 #include "robot/model.hpp"
 
@@ -39,7 +38,8 @@ struct JointTransform {
 
   JointTransform(const Joint& joint, double q) noexcept : JointTransform(joint.dh) {
     if (joint.kind == JointKind::kRevolute) {
-      turnPlane(std::sin(q), std::cos(q), cos_theta, sin_theta);  // by q from the row's theta: quarter turns stay exact
+      const auto [sine, cosine] = elementary::sincos(q);
+      turnPlane(sine, cosine, cos_theta, sin_theta);  // by q from the row's theta: quarter turns stay exact
     } else {
       d += q;
     }

@@ -41,6 +41,9 @@ void computeKinematics(const RobotModel& model, const JointVector& q, const Join
 /// Siciliano, Egeland, IEEE Trans. Control Systems Technology (1994)). Where s is zero, phi is 0 as in zyzFromRotation.
 [[nodiscard]] Jacobian dampedAnalyticalJacobian(const Kinematics& kinematics) noexcept;
 
+/// Rotation by `angle_rad` about a unit vector (Rodrigues; Siciliano et al. 2009, eq. 2.25).
+[[nodiscard]] Matrix3 rotationAbout(const Vector3& axis, double angle_rad) noexcept;
+
 /// Rotation vector (axis x angle, angle in [0, pi]) of R [rad].
 [[nodiscard]] Vector3 rotationVector(const Matrix3& R) noexcept;
 

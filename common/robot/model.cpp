@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "robot/dynamics.hpp"
 
@@ -73,7 +74,7 @@ JointVector sampleConfiguration(const RobotModel& model, int k) {
 
 }  // namespace
 
-Angle::Angle(double rad) : rad_(rad), sine_(std::sin(rad)), cosine_(std::cos(rad)) {
+Angle::Angle(double rad) : rad_(rad), sine_(elementary::sin(rad)), cosine_(elementary::cos(rad)) {
   constexpr double kRounding = 4e-16;  // of pi/2, pi and 3 pi/2 as doubles, and of the sine and cosine themselves
   if (std::abs(sine_) < kRounding) {
     sine_ = 0.0;

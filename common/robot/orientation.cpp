@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "base/elementary.hpp"
 #include "robot/kinematics.hpp"
 
 namespace baton {
@@ -14,11 +15,11 @@ constexpr double kSingularSine = 1e-9;  // sin(theta) below this is zero but for
 /// the rounding of each step.
 double angleOf(double y, double x) {
   constexpr double kHair = 1e-9;
-  const double angle = std::atan2(y, x);
+  const double angle = elementary::atan2(y, x);
   return angle < -kPi + kHair ? angle + 2.0 * kPi : angle;
 }
 
-double sineOfTheta(const Matrix3& R) { return std::hypot(R(0, 2), R(1, 2)); }
+double sineOfTheta(const Matrix3& R) { return elementary::hypot(R(0, 2), R(1, 2)); }
 
 /// J_A with T^-1 written out; inverse_sine stands for 1 / sin(theta) in the rates of psi and phi.
 Jacobian zyzJacobian(const Kinematics& kinematics, double s_theta, double inverse_sine) {
@@ -41,14 +42,14 @@ Jacobian zyzJacobian(const Kinematics& kinematics, double s_theta, double invers
 
 Vector3 zyzFromRotation(const Matrix3& R) noexcept {
   const double sine = sineOfTheta(R);
-  const double theta = std::atan2(sine, R(2, 2));
+  const double theta = elementary::atan2(sine, R(2, 2));
   if (sine < kSingularSine) return {0.0, theta, angleOf(R(1, 0), R(1, 1))};
   return {angleOf(R(1, 2), R(0, 2)), theta, angleOf(R(2, 1), -R(2, 0))};
 }
 
 Matrix3 zyzRateMatrix(const Vector3& zyz) noexcept {
-  const double s_phi = std::sin(zyz(0)), c_phi = std::cos(zyz(0));
-  const double s_theta = std::sin(zyz(1)), c_theta = std::cos(zyz(1));
+  const auto [s_phi, c_phi] = elementary::sincos(zyz(0));
+  const auto [s_theta, c_theta] = elementary::sincos(zyz(1));
   Matrix3 T;
   T << 0.0, -s_phi, c_phi * s_theta,  //
       0.0, c_phi, s_phi * s_theta,    //
@@ -71,6 +72,20 @@ Jacobian dampedAnalyticalJacobian(const Kinematics& kinematics) noexcept {
   return zyzJacobian(kinematics, s_theta, s_theta / (s_theta * s_theta + kDamping * kDamping * nearness));
 }
 
+Matrix3 rotationAbout(const Vector3& axis, double angle_rad) noexcept {
+  const auto [sine, cosine] = elementary::sincos(angle_rad);
+  const Vector3 sine_axis = sine * axis;
+  Matrix3 R = ((1.0 - cosine) * axis) * axis.transpose();
+  R.diagonal().array() += cosine;
+  R(0, 1) -= sine_axis.z();
+  R(0, 2) += sine_axis.y();
+  R(1, 0) += sine_axis.z();
+  R(1, 2) -= sine_axis.x();
+  R(2, 0) -= sine_axis.y();
+  R(2, 1) += sine_axis.x();
+  return R;
+}
+
 Vector3 rotationVector(const Matrix3& R) noexcept {
   // By the unit quaternion, which keeps its digits both near 0 and near pi, where the trace and the antisymmetric part
   // of R each lose theirs.
@@ -79,7 +94,7 @@ Vector3 rotationVector(const Matrix3& R) noexcept {
   const Vector3 axis_sine = std::copysign(1.0, rotation.w()) * rotation.vec();  // axis x sin(angle / 2), angle <= pi
   const double sine = axis_sine.norm();
   if (sine == 0.0) return Vector3::Zero();
-  return (2.0 * std::atan2(sine, w) / sine) * axis_sine;
+  return (2.0 * elementary::atan2(sine, w) / sine) * axis_sine;
 }
 
 }  // namespace baton

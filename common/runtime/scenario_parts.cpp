@@ -1,7 +1,6 @@
 /// The parts of a scenario that are worlds of their own: what the tip touches, and what is wanted of it.
 #include "runtime/scenario_parts.hpp"
 
-#include <Eigen/Geometry>
 #include <limits>
 
 #include "robot/kinematics.hpp"
@@ -17,7 +16,7 @@ const NumberRange kStiffness{0.0, 1e9, "N/m"};
 const NumberRange kDamping{0.0, 1e7, "N s/m"};
 const NumberRange kForce{-1e6, 1e6, "N"};
 const NumberRange kMoment{-1e6, 1e6, "N m"};
-const NumberRange kAngle{-100.0, 100.0, "rad"};
+const NumberRange kPhaseOrOrientation{-100.0, 100.0, "rad"};
 const NumberRange kFrequency{0.0, 1e5, "rad/s"};
 const NumberRange kDeviation{0.0, 1e3, "rad or m"};
 const NumberRange kRamp{0.0, 0.5, "of a segment's time", true};
@@ -66,10 +65,9 @@ double readWaypointTime(const YamlMap& waypoint, const std::vector<Waypoint>& be
 
 /// ZYZ angles to a rotation; Siciliano et al. (2009), eq. 2.18.
 Matrix3 readZyz(const YamlNode& node) {
-  const Vector3 zyz = node.vector3(kAngle);
-  const Eigen::AngleAxisd phi(zyz.x(), Vector3::UnitZ()), theta(zyz.y(), Vector3::UnitY()),
-      psi(zyz.z(), Vector3::UnitZ());
-  return (phi * theta * psi).toRotationMatrix();
+  const Vector3 zyz = node.vector3(kPhaseOrOrientation);
+  return rotationAbout(Vector3::UnitZ(), zyz.x()) * rotationAbout(Vector3::UnitY(), zyz.y()) *
+         rotationAbout(Vector3::UnitZ(), zyz.z());
 }
 
 /// All waypoints are of joints, or all of the tip; the first one says which.
@@ -114,7 +112,7 @@ JointSine readSine(const YamlNode& node, int n) {
   JointSine sine;
   sine.amplitude = readJointsOrOne(map["amplitude"], kJointPosition, n);
   sine.frequency_rad_per_s = readJointsOrOne(map["frequency_rad_per_s"], kFrequency, n);
-  sine.phase_rad = joints_or_zero("phase_rad", kAngle);
+  sine.phase_rad = joints_or_zero("phase_rad", kPhaseOrOrientation);
   sine.offset = joints_or_zero("offset", kJointPosition);
   sine.end_s = map.numberOr("end_s", kDuration, sine.end_s);
   if (const auto slow_down = map.find("slow_down_s")) {

@@ -1,10 +1,10 @@
 #include "trajectory/trajectory.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "base/elementary.hpp"
 #include "robot/kinematics.hpp"
 
 namespace baton {
@@ -58,7 +58,8 @@ void evaluateJoints(const JointSine& sine, double time_s, Reference& out) noexce
   out.qdd.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double w = sine.frequency_rad_per_s(i), angle = w * time.s + sine.phase_rad(i);
-    const double swing = sine.amplitude(i) * std::sin(angle), slope = sine.amplitude(i) * w * std::cos(angle);
+    const auto [sine_of, cosine_of] = elementary::sincos(angle);
+    const double swing = sine.amplitude(i) * sine_of, slope = sine.amplitude(i) * w * cosine_of;
     out.q(i) = sine.offset(i) + swing;
     out.qd(i) = slope * time.ds;
     out.qdd(i) = slope * time.dds - w * w * swing * time.ds * time.ds;
@@ -87,7 +88,7 @@ void evaluateTip(const TipPath& path, double time_s, Reference& out) noexcept {
   out.X_WE.p += along.s * way.head<3>();
   if (angle > 0.0) {
     const Vector3 axis = way.tail<3>() / angle;
-    out.X_WE.R = Eigen::AngleAxisd(along.s * angle, axis) * from.X_WE.R;
+    out.X_WE.R = rotationAbout(axis, along.s * angle) * from.X_WE.R;
   }
   out.V_WE = along.ds * way;
   out.A_WE = along.dds * way;
