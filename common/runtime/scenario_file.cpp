@@ -21,7 +21,7 @@ namespace baton {
 namespace {
 
 const NumberRange kJointVelocity{-1e4, 1e4, "rad/s or m/s"};
-const NumberRange kEffortLimit{0.0, 1e9, "N m or N", true};
+const NumberRange kCommandLimit{0.0, 1e9, "N m or N", true};
 
 // --- time
 
@@ -84,7 +84,7 @@ void readStart(const YamlMap& map, Scenario& scenario) {
 void readEffortLimit(const YamlMap& map, RobotModel& robot) {
   const auto node = map.find("effort_limit");
   if (!node) return;
-  const JointVector limit = readJointsOrOne(*node, kEffortLimit, robot.size());
+  const JointVector limit = readJointsOrOne(*node, kCommandLimit, robot.size());
   for (int i = 0; i < robot.size(); ++i) robot.joints[static_cast<std::size_t>(i)].effort_limit = limit(i);
 }
 

@@ -86,16 +86,16 @@ std::string progressText(std::size_t done, std::size_t of, double elapsed_s, std
 }
 
 /// One line of the table.
-struct Row {
+struct KillRow {
   KillCase of;
   std::size_t runs = 0, as_told = 0, repeated = 0;
   double largest_torque = 0.0;
 };
 
-std::vector<Row> tableOf(const std::vector<Trial>& trials) {
-  std::vector<Row> rows;
+std::vector<KillRow> tableOf(const std::vector<Trial>& trials) {
+  std::vector<KillRow> rows;
   for (const KillCase& of : killCases()) {
-    Row row{.of = of};
+    KillRow row{.of = of};
     for (const Trial& trial : trials) {
       if (!(trial.kill.of == of)) continue;
       ++row.runs;
@@ -134,7 +134,7 @@ void print(const std::vector<Trial>& trials, const KillsRequest& request, double
   }
   std::printf("%-12s %-10s %5s  %13s  %14s  %20s\n", "victim", "way", "runs", "ended as told", "largest torque",
               "repeated bit for bit");
-  for (const Row& row : tableOf(trials)) {
+  for (const KillRow& row : tableOf(trials)) {
     std::printf("%-12s %-10s %5zu  %13zu  %12.0f %%  %20zu\n", toString(row.of.victim), toString(row.of.way), row.runs,
                 row.as_told, 100.0 * row.largest_torque, row.repeated);
   }
@@ -152,7 +152,6 @@ void print(const std::vector<Trial>& trials, const KillsRequest& request, double
 }
 
 void kills(const KillsRequest& request, ExitCode& exit_code) {
-  using Clock = std::chrono::steady_clock;
   const Scenario scenario = loadScenario(findScenario(request.scenario).string());
   const std::vector<Kill> drawn = drawKills(scenario, request.seed, request.runs);
   const fs::path folder =
@@ -174,8 +173,8 @@ void kills(const KillsRequest& request, ExitCode& exit_code) {
   }
   std::vector<Trial> trials;
   std::size_t failed = 0;
-  const Clock::time_point begin = Clock::now();
-  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const std::chrono::steady_clock::time_point begin = std::chrono::steady_clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   {
     ProgressLine line;
     for (const Kill& kill : drawn) {

@@ -26,8 +26,8 @@ void status(const CellTarget& target) {
   CellClient client(CellClient::find(target.domain, target.cell));
   const Scenario scenario = loadScenario(keptScenario(client.info()), keptRobot(client.info()));
   const msg::SimStatus sim = simStatus(client);
-  const Json timing =
-      toJson(client.latest(dds::topics::kTimingStatus, CellClient::kStatusPatience).value_or(msg::TimingStatus{}));
+  const Json timing = baton::toJson(
+      client.latest(dds::topics::kTimingStatus, CellClient::kStatusPatience).value_or(msg::TimingStatus{}));
   std::vector<std::string> expected = serviceNames(scenario);
   if (client.info().recording.empty()) std::erase(expected, kRecorderName);
   const auto services = latestByName(client, dds::topics::kServiceStatus, expected);

@@ -22,7 +22,7 @@ namespace baton {
 namespace {
 using Json = nlohmann::ordered_json;
 
-struct Arguments {
+struct ParamArguments {
   CellTarget target;
   std::string controller;             // list: empty for all
   std::vector<std::string> names;     // get
@@ -83,7 +83,7 @@ std::vector<std::string> meantControllers(const CellClient& client, const std::s
   return {controller};
 }
 
-void list(const Arguments& request) {
+void list(const ParamArguments& request) {
   CellClient client(CellClient::find(request.target.domain, request.target.cell));
   const std::vector<std::string> expected = meantControllers(client, request.controller);
   const auto all = latestByName(client, dds::topics::kParameterStatus, expected);
@@ -106,7 +106,7 @@ void list(const Arguments& request) {
   if (request.target.json) std::cout << toText(json) << '\n';
 }
 
-void get(const Arguments& request) {
+void get(const ParamArguments& request) {
   CellClient client(CellClient::find(request.target.domain, request.target.cell));
   const auto all = latestByName(client, dds::topics::kParameterStatus, meantControllers(client, request.controller));
   const auto found = all.find(request.controller);
@@ -130,7 +130,7 @@ void get(const Arguments& request) {
   if (request.target.json) std::cout << toText(json) << '\n';
 }
 
-void set(const Arguments& request, ExitCode& exit_code) {
+void set(const ParamArguments& request, ExitCode& exit_code) {
   msg::ParameterRequest message;
   for (const std::string& setting : request.settings) {
     if (message.values().size() == msg::MAX_PARAMETERS) {
@@ -169,7 +169,7 @@ void set(const Arguments& request, ExitCode& exit_code) {
 void addParamCommand(CLI::App& app, ExitCode& exit_code) {
   CLI::App* command = app.add_subcommand("param", "the parameters of a run's controllers");
   command->require_subcommand(1);
-  const auto request = std::make_shared<Arguments>();
+  const auto request = std::make_shared<ParamArguments>();
   const auto add = [&](const char* name, const char* help) {
     return addCellCommand(*command, request->target, name, help);
   };

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kReplayer = "replayer";
 
-struct Arguments {
+struct PlayerArguments {
   CellTarget target{.cell = "replay"};
   std::string run;
   msg::ReplayRequest request;
@@ -34,7 +34,7 @@ struct Replay {
 };
 
 /// The replay that is meant. Throws UnavailableError when there is none, UsageError when there are several.
-Replay findReplay(const Arguments& arguments) {
+Replay findReplay(const PlayerArguments& arguments) {
   const CellTarget& target = arguments.target;
   RunInfo place;
   place.cell = target.cell;
@@ -65,7 +65,7 @@ Replay findReplay(const Arguments& arguments) {
   return {.place = place, .status = statuses.back()};
 }
 
-void tell(const Arguments& arguments) {
+void tell(const PlayerArguments& arguments) {
   const auto [place, status] = findReplay(arguments);
   const double position_s = inSeconds(status.position_ns());
   const double duration_s = inSeconds(status.duration_ns());
@@ -105,7 +105,7 @@ void tell(const Arguments& arguments) {
   std::cout << text;
 }
 
-void ask(const Arguments& arguments, ExitCode& exit_code) {
+void ask(const PlayerArguments& arguments, ExitCode& exit_code) {
   const auto [place, status] = findReplay(arguments);
   CellClient client(place);
   msg::ReplayRequest request = arguments.request;
@@ -137,7 +137,7 @@ void ask(const Arguments& arguments, ExitCode& exit_code) {
 }  // namespace
 
 void addPlayerCommand(CLI::App& app, ExitCode& exit_code) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<PlayerArguments>();
   CLI::App* command = app.add_subcommand("player", "a replay that goes on: pause, step, seek, change the rate, stop");
   command->require_subcommand(1);
   command->footer(

@@ -22,7 +22,7 @@ using ull = unsigned long long;
 
 constexpr std::chrono::minutes kFilePatience{2};  // for one that is written and waits for its disk
 
-struct Arguments {
+struct RecordArguments {
   CellTarget target;
   std::string out;
 };
@@ -108,7 +108,7 @@ std::string absoluteOut(const std::string& out) {
   return path.string();
 }
 
-void ask(const Arguments& arguments, msg::RecordAction action, ExitCode& exit_code) {
+void ask(const RecordArguments& arguments, msg::RecordAction action, ExitCode& exit_code) {
   const std::string out = absoluteOut(arguments.out);
   CellClient client = clientOf(arguments.target);
   requireRecorder(client);
@@ -152,7 +152,7 @@ void addRecordCommand(CLI::App& app, ExitCode& exit_code) {
       "makes no recording incomplete. Steps are those of plant_state; in JSON, \"step\" is the last one before what\n"
       "was asked took effect.\n"
       "Exit codes: 0 done; 1 refused, or the recorder has failed; 2 wrong input; 3 no run, no recorder, no answer.");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<RecordArguments>();
   const auto add = [&](const char* name, const char* help) {
     return addCellCommand(*command, arguments->target, name, help);
   };

@@ -81,11 +81,10 @@ void tell(const nlohmann::ordered_json& result, bool json) {
 
 /// The whole run in this process. Returns what result.json would say, as far as it applies.
 nlohmann::ordered_json runInProcess(const std::string& scenario_name) {
-  using Clock = std::chrono::steady_clock;
-  const auto secondsSince = [](Clock::time_point then) {
-    return std::chrono::duration<double>(Clock::now() - then).count();
+  const auto secondsSince = [](std::chrono::steady_clock::time_point then) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
   };
-  const Clock::time_point launched = Clock::now();
+  const std::chrono::steady_clock::time_point launched = std::chrono::steady_clock::now();
   const std::string file = findScenario(scenario_name).string();
   const Scenario scenario = loadScenario(file);
   for (const std::string& warning : scenario.warnings) std::fprintf(stderr, "baton: warning: %s\n", warning.c_str());
@@ -99,11 +98,11 @@ nlohmann::ordered_json runInProcess(const std::string& scenario_name) {
   status.end_step(scenario.end_step);
   status.holder(scenario.active);
   const double startup_s = secondsSince(launched);
-  const Clock::time_point started = Clock::now();
+  const std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
   Histogram period_ns;
-  Clock::time_point opened = started;
+  std::chrono::steady_clock::time_point opened = started;
   while (run.step()) {
-    const Clock::time_point now = Clock::now();
+    const std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now();
     period_ns.record(std::chrono::nanoseconds(now - opened).count());
     opened = now;
     constexpr std::uint64_t kShownEvery = 1000;  // steps
@@ -131,7 +130,7 @@ nlohmann::ordered_json runInProcess(const std::string& scenario_name) {
           {"real_time_ratio", elapsed_s > 0.0 ? sim_time_s / elapsed_s : 0.0},
           {"startup_s", startup_s},
           {"missed_steps", 0},
-          {"timing", toJson(timing)},
+          {"timing", baton::toJson(timing)},
           {"chain_hash", std::to_string(run.chainHash())},
           {"recording", nullptr},
           {"swaps", nlohmann::ordered_json::array()}};

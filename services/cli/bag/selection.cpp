@@ -13,7 +13,7 @@
 namespace baton {
 namespace {
 
-constexpr std::uint64_t kShowEvery = 4096;
+constexpr std::uint64_t kShowSelectionEvery = 4096;
 
 }  // namespace
 
@@ -81,7 +81,7 @@ void SelectedMessages::forEach(const std::string& doing, const std::function<boo
   mcap::MessageCursor messages = reader_.messages(filter_);
   std::uint64_t done = 0;
   for (mcap::MessageView message; messages.next(message) && use(message);) {
-    if (++done % kShowEvery != 0 || doing.empty()) continue;
+    if (++done % kShowSelectionEvery != 0 || doing.empty()) continue;
     const double part = std::min(1.0, static_cast<double>(done) / expected);
     progress_.show(doing + " " + progressBar(part) + " " + std::to_string(done) + " messages");
   }

@@ -30,7 +30,7 @@ struct Part {
 };
 
 /// Its metadata and attachments are read here, so that their damage shows.
-void open(Part& part, const std::function<void(double)>& progress) {
+void openPart(Part& part, const std::function<void(double)>& progress) {
   mcap::ReaderOptions options;
   options.on_damage = [&part](const mcap::Damage& found) {
     part.damage[found.offset] =
@@ -77,7 +77,7 @@ std::vector<Part> openParts(const std::vector<std::string>& files, const std::fu
   std::vector<Part> parts(files.size());  // does not grow: the readers' callbacks know their places
   for (std::size_t i = 0; i < files.size(); ++i) {
     parts[i].file = files[i];
-    open(parts[i], progress);
+    openPart(parts[i], progress);
   }
   std::sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.index < b.index; });
   for (std::size_t i = 0; i < parts.size(); ++i) {

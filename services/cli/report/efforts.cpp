@@ -11,12 +11,10 @@
 namespace baton {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 /// Puts the messages of a file where they belong, in whatever order they come.
-class Filler {
+class EffortFiller {
  public:
-  explicit Filler(RecordedEfforts& run) : run_(run), states_(static_cast<std::size_t>(run.trace.steps())) {
+  explicit EffortFiller(RecordedEfforts& run) : run_(run), states_(static_cast<std::size_t>(run.trace.steps())) {
     const Scenario& scenario = run.trace.scenario;
     run.effort.assign(scenario.controllers.size(),
                       Eigen::MatrixXd::Constant(scenario.robot.size(), run.trace.steps(), kNan));
@@ -102,7 +100,7 @@ RecordedEfforts readEfforts(const std::filesystem::path& file, Trace trace) {
   run.trace = std::move(trace);
   const mcap::Reader reader(file);
   if (!reader.info().is_complete) run.cut = reader.info().problem;
-  Filler fill(run);
+  EffortFiller fill(run);
   const auto read = [&]<class M>(const mcap::MessageView& view, const dds::Topic<M>& topic) {
     M message;
     if (view.channel->topic == topic.name && dds::decode(view.data, message)) fill(message);

@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "runtime/json.hpp"
 #include "theory_tools.hpp"
 
 namespace baton {
 namespace {
 
 constexpr double kSettled = 0.02;  // part of the stroke
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// The integral over the run by trapezoids, of what f gives at each step.
 template <class F>
@@ -22,10 +21,11 @@ double integral(Eigen::Index steps, double dt_s, const F& f) {
   return sum * dt_s;
 }
 
-using Row = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
+using RowRef = Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>;
 
 /// @param desired, actual  one signal each.
-ErrorMetrics errorMetrics(std::string name, std::string unit, const Row& desired, const Row& actual, double dt_s) {
+ErrorMetrics errorMetrics(std::string name, std::string unit, const RowRef& desired, const RowRef& actual,
+                          double dt_s) {
   ErrorMetrics m{.name = std::move(name), .unit = std::move(unit)};
   const Eigen::Index steps = actual.size();
   const auto error = [&](Eigen::Index k) { return desired(k) - actual(k); };
@@ -50,10 +50,6 @@ ErrorMetrics errorMetrics(std::string name, std::string unit, const Row& desired
   }
   if (outside + 1 < steps) m.settling_s = static_cast<double>(outside + 1) * dt_s;
   return m;
-}
-
-nlohmann::ordered_json orNull(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
 nlohmann::ordered_json toJson(const ErrorMetrics& m) {

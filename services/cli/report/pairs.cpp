@@ -11,7 +11,6 @@
 namespace baton {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kAtRest = 0.005;  // m/s: a tip that is slower stands, as far as a handover can tell
 
 using Pair = std::pair<std::size_t, std::size_t>;

@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "runtime/json.hpp"
 #include "theory_tools.hpp"
 
 namespace baton {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 ShadowJoint jointOf(const RecordedEfforts& run, int who, int i) {
   const Trace& trace = run.trace;
@@ -45,8 +43,6 @@ ShadowJoint jointOf(const RecordedEfforts& run, int who, int i) {
   if (count > 0) joint.rms = std::sqrt(sum / static_cast<double>(count));
   return joint;
 }
-
-nlohmann::ordered_json orNull(double value) { return std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr; }
 
 std::string numberText(double value) { return std::isfinite(value) ? fmt::format("{:.4e}", value) : "-"; }
 

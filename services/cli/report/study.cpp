@@ -9,12 +9,12 @@
 namespace baton {
 namespace {
 
-struct Entry {
+struct ChartEntry {
   const char* name;
   ChartResult (*make)(const study::Inputs&);
 };
 
-constexpr Entry kCharts[] = {
+constexpr ChartEntry kCharts[] = {
     {"coupling_energy", study::couplingEnergy},
     {"coupling_stability", study::couplingStability},
     {"coupling_error", study::couplingError},
@@ -24,13 +24,13 @@ constexpr Entry kCharts[] = {
 
 std::vector<std::string> chartNames() {
   std::vector<std::string> names;
-  for (const Entry& entry : kCharts) names.emplace_back(entry.name);
+  for (const ChartEntry& entry : kCharts) names.emplace_back(entry.name);
   return names;
 }
 
 ChartResult makeChart(const ChartRequest& request, const std::vector<Trace>& runs, const ShowProgress& progress) {
-  const auto* const entry =
-      std::find_if(std::begin(kCharts), std::end(kCharts), [&](const Entry& one) { return request.name == one.name; });
+  const auto* const entry = std::find_if(std::begin(kCharts), std::end(kCharts),
+                                         [&](const ChartEntry& one) { return request.name == one.name; });
   if (entry == std::end(kCharts)) throw UsageError(unknownName("chart", request.name, chartNames()));
   return entry->make({.runs = runs, .base = runs.at(static_cast<std::size_t>(request.run)), .progress = progress});
 }

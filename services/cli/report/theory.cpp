@@ -13,13 +13,13 @@
 namespace baton {
 namespace {
 
-struct Entry {
+struct CheckEntry {
   const char* name;
   theory::Checks (*check)(const theory::Inputs&);
   bool compares = false;  // needs a second run
 };
 
-constexpr Entry kChecks[] = {
+constexpr CheckEntry kChecks[] = {
     {"reaches_goal", theory::reachesGoal},
     {"decay_rate", theory::decayRate},
     {"gravity_offset", theory::gravityOffset},
@@ -70,13 +70,13 @@ bool Check::passes() const {
 
 std::vector<std::string> checkNames() {
   std::vector<std::string> names;
-  for (const Entry& entry : kChecks) names.emplace_back(entry.name);
+  for (const CheckEntry& entry : kChecks) names.emplace_back(entry.name);
   return names;
 }
 
 std::vector<Check> runCheck(const CheckRequest& request, const std::vector<Trace>& runs) {
-  const auto* const entry =
-      std::find_if(std::begin(kChecks), std::end(kChecks), [&](const Entry& one) { return request.name == one.name; });
+  const auto* const entry = std::find_if(std::begin(kChecks), std::end(kChecks),
+                                         [&](const CheckEntry& one) { return request.name == one.name; });
   if (entry == std::end(kChecks)) throw UsageError(unknownName("check", request.name, checkNames()));
   if (entry->compares != request.other.has_value()) {
     throw UsageError("check " + request.name + ": expected " +

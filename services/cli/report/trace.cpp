@@ -43,9 +43,10 @@ Stretch statesIn(const mcap::Reader& reader, std::uint64_t begin_ns, std::int64_
 
 /// Fills a trace from the messages of the loop: states first, then the rest. What a service would refuse counts as not
 /// recorded.
-class Filler {
+class TraceFiller {
  public:
-  Filler(Trace& trace, Eigen::Index steps) : trace_(trace), R_WE_(static_cast<std::size_t>(steps), Matrix3::Zero()) {
+  TraceFiller(Trace& trace, Eigen::Index steps)
+      : trace_(trace), R_WE_(static_cast<std::size_t>(steps), Matrix3::Zero()) {
     const auto make = [&](Eigen::MatrixXd& matrix, Eigen::Index rows) {
       matrix = Eigen::MatrixXd::Constant(rows, steps, std::numeric_limits<double>::quiet_NaN());
     };
@@ -110,7 +111,7 @@ class Filler {
 
 /// Reads the messages of these topics in one pass over the file.
 template <class... T>
-void read(const mcap::Reader& reader, std::uint64_t begin_ns, Filler& filler, const dds::Topic<T>&... topics) {
+void read(const mcap::Reader& reader, std::uint64_t begin_ns, TraceFiller& filler, const dds::Topic<T>&... topics) {
   const auto fill = [&]<class M>(const dds::Topic<M>& topic, const mcap::MessageView& view) {
     M message;
     if (view.channel->topic == topic.name && dds::decode(view.data, message)) filler(message);
@@ -130,7 +131,7 @@ Trace readTrace(const std::filesystem::path& file) {
   const std::uint64_t begin_ns = lastTakeBegin(reader);
   const Stretch stretch = statesIn(reader, begin_ns, trace.scenario.step_ns, file);
   trace.first_step = stretch.first;
-  Filler filler(trace, stretch.steps);
+  TraceFiller filler(trace, stretch.steps);
   read(reader, begin_ns, filler, dds::topics::kPlantState);
   read(reader, begin_ns, filler, dds::topics::kReference, dds::topics::kContact, dds::topics::kSwapOutcome,
        dds::topics::kSimStatus);

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@
 #include "runtime/scenario.hpp"
 
 namespace baton {
+
+/// Stands for a number that was not recorded, or that there is none of.
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Column k of every matrix is step first_step + k; what was not recorded is NaN.
 struct Trace {
