@@ -103,9 +103,11 @@ struct ReaderTimes {
 }
 #endif
 
-/// No service that looks up types: 2.9 has it on demand, 3 has it always.
-inline void useNoTypeLookup([[maybe_unused]] dds::DomainParticipantQos& qos) {
-#if BATON_FASTDDS == 2
+/// Sends no types and looks up none.
+inline void propagateNoTypes(dds::DomainParticipantQos& qos) {
+#if BATON_FASTDDS == 3
+  qos.properties().properties().emplace_back(dds::parameter_policy_type_propagation, "disabled");
+#else
   qos.wire_protocol().builtin.typelookup_config.use_client = false;
   qos.wire_protocol().builtin.typelookup_config.use_server = false;
 #endif

@@ -120,7 +120,7 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
   discovery.leaseDuration = {3600, 0};
   discovery.initial_announcements.count = 5;
   discovery.initial_announcements.period = {0, 20'000'000};
-  fastdds::useNoTypeLookup(qos);
+  fastdds::propagateNoTypes(qos);
   return qos;
 }
 
