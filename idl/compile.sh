@@ -1,10 +1,63 @@
 #!/bin/sh
 # One IDL file through one tool; any warning is an error. Called by idl/CMakeLists.txt.
+# Paths are absolute.
 #   compile.sh fastdds FILE.idl INCLUDE_DIR OUT_DIR     types for the services: OUT_DIR/FILE.h, OUT_DIR/FILE.cxx
 #   compile.sh cyclone FILE.idl INCLUDE_DIR OUT_DIR     proves that Cyclone DDS accepts the file
 #   compile.sh flatten FILE.idl INCLUDE_DIR OUT_FILE    the text that recordings carry: no comments, no preprocessor lines
+#
+# fastddsgen 2.3 (Debian 12) and 4.0 (Debian 13) write different code. What is done to it here makes the same names and
+# the same checks of it; each change is counted, so that a fastddsgen that writes otherwise breaks the build.
 set -eu
 tool=$1 idl=$2 include=$3 out=$4
+
+fail() {
+  printf '%s: %s\n' "$idl" "$1" >&2
+  exit 1
+}
+
+# Lines of a file that match, 0 included.
+count() { grep -cE "$1" "$2" || true; }
+
+structs() { count '^ *@final struct ' "$idl"; }
+
+# expect WHAT FOUND WANTED
+expect() { [ "$2" = "$3" ] || fail "expected fastddsgen to write $3 $1, found $2: look at its code and teach compile.sh"; }
+
+# For a sequence of strings fastddsgen 2.3 makes as much room as the payload claims to need before it looks whether the
+# bytes are there: a forged length would ask for gigabytes. (Fast CDR 2 looks first.)
+limit_sequences_of_strings() {
+  refuse='throw eprosima::fastcdr::exception::NotEnoughMemoryException("a sequence of strings is too long");'
+  sed -i 's/^\( *\)\(m_[A-Za-z_]*\.resize(sequence_size);\)/\1if (sequence_size > 1024) '"$refuse"'\n\1\2/' "$1"
+  expect "sequences of strings" "$(count 'if \(sequence_size > 1024\)' "$1")" "$(count 'sequence<string' "$idl")"
+  expect "sizes of sequences of strings" "$(count 'resize\(sequence_size\)' "$1")" "$(count 'sequence<string' "$idl")"
+}
+
+# fastddsgen 4 writes scoped enums, 2.3 does not.
+unscope_enums() {
+  sed -i 's/^enum class \([A-Za-z]*\) : int32_t$/enum \1 : int32_t/' "$1"
+  expect "enums" "$(count '^enum [A-Za-z]* : int32_t$' "$1")" "$(count '^ *enum ' "$idl")"
+}
+
+# Code of fastddsgen 4 takes a message for whole whose payload ends behind any of its members.
+read_every_member() {
+  sed -i 's/cdr\.deserialize_type(/baton::msg::readEveryMember(cdr, /' "$1"
+  sed -i '1i #include "msg/cdr.hpp"' "$1"
+  expect "types to read" "$(count 'readEveryMember' "$1")" "$(structs)"
+}
+
+# What 2.3 has in FILE.h, FILE.cxx and FILEPubSubTypes is in more files with 4; and the room that a type takes is here found
+# by the type.
+name_as_fastddsgen_2_does() {
+  {
+    printf '#pragma once\n#include "%s.hpp"\n#include "%sCdrAux.hpp"\n#include "msg/cdr.hpp"\n' "$name" "$name"
+    sed -n 's/^constexpr uint32_t \(baton_msg_\([A-Za-z]*\)_max_cdr_typesize\) .*/template <>\ninline constexpr std::size_t baton::msg::max_cdr_size<baton::msg::\2> = \1;/p' \
+      "$types/${name}CdrAux.hpp"
+  } >"$types/$name.h"
+  expect "sizes of types" "$(count '^inline constexpr' "$types/$name.h")" "$(structs)"
+  printf '#include "%sCdrAux.ipp"\n' "$name" >"$types/$name.cxx"
+  printf '#pragma once\n#include "%sPubSubTypes.hpp"\n' "$name" >"$types/${name}PubSubTypes.h"
+  printf '#include "%sTypeObjectSupport.cxx"\n' "$name" >>"$types/${name}PubSubTypes.cxx"
+}
 
 case $tool in
   fastdds)
@@ -13,16 +66,28 @@ case $tool in
     # directory, and only this file's own types are taken over.
     scratch=$(mktemp -d)
     trap 'rm -rf "$scratch"' EXIT
-    mkdir "$scratch/types"
-    log=$(fastddsgen -cs -replace -t "$scratch" -I "$include" -d "$scratch/types" "$idl" 2>&1) || { printf '%s\n' "$log" >&2; exit 1; }
+    types=$scratch/types
+    mkdir "$types"
+    cd "$scratch"  # fastddsgen 4 repeats the path from here to the file below OUT_DIR, if there is one
+    log=$(fastddsgen -cs -replace -t "$scratch" -I "$include" -d "$types" "$idl" 2>&1) || { printf '%s\n' "$log" >&2; exit 1; }
     name=$(basename "$idl" .idl)
-    # For a sequence of strings fastddsgen 2.3 makes as much room as the payload claims to need before it looks whether
-    # the bytes are there: a forged length would ask for gigabytes.
-    sed -i 's/^\( *\)\(m_[A-Za-z_]*\.resize(sequence_size);\)/\1if (sequence_size > 1024) throw eprosima::fastcdr::exception::NotEnoughMemoryException("a sequence of strings is too long");\n\1\2/' \
-      "$scratch/types/$name.cxx"
-    mv "$scratch/types/$name."* "$scratch/types/${name}PubSubTypes."* "$out"
     # fastddsgen 2.3 does not know @unit and says so each time; the annotation is for the tools that read recordings.
-    problems=$(printf '%s\n' "$log" | grep -iE 'warning|error' | grep -v 'Annotation unit not supported' || true)
+    # fastddsgen 4 ends with success behind some exceptions.
+    problems=$(printf '%s\n' "$log" | grep -iE 'warning|error|exception' | grep -v 'Annotation unit not supported' || true)
+    if [ -n "$problems" ]; then
+      :
+    elif [ -e "$types/$name.hpp" ]; then
+      unscope_enums "$types/$name.hpp"
+      read_every_member "$types/${name}CdrAux.ipp"
+      name_as_fastddsgen_2_does
+    else
+      limit_sequences_of_strings "$types/$name.cxx"
+    fi
+    for kind in "" CdrAux PubSubTypes TypeObjectSupport; do
+      for file in "$types/$name$kind."*; do
+        if [ -e "$file" ]; then mv "$file" "$out"; fi
+      done
+    done
     ;;
   cyclone)
     mkdir -p "$out"

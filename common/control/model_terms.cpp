@@ -16,7 +16,7 @@ ParameterSpec modelUseParameter() {
 }
 
 ModelUse modelUse(const ParameterValues& values) {
-  const std::string& word = choice(values, "model");
+  const std::string word = choice(values, "model");
   if (word == "ignore_inertia") return ModelUse::kIgnoreInertia;
   if (word == "ignore_bias") return ModelUse::kIgnoreBias;
   if (word == "ignore_both") return ModelUse::kIgnoreBoth;

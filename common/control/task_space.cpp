@@ -49,7 +49,7 @@ std::vector<ParameterSpec> taskSolverParameters() {
 
 TaskSolver taskSolver(const ParameterValues& values) {
   TaskSolver solver;
-  const std::string& word = choice(values, "solver");
+  const std::string word = choice(values, "solver");
   if (word == "pseudo_inverse") solver.method = TaskMethod::kPseudoInverse;
   if (word == "damped_least_squares") solver.method = TaskMethod::kDampedLeastSquares;
   solver.damping = number(values, "damping");

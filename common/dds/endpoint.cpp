@@ -1,23 +1,18 @@
 #include "dds/endpoint.hpp"
 
-#include <fastdds/rtps/common/WriteParams.h>
 #include <algorithm>
 #include <atomic>
-#include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/DataWriterListener.hpp>
-#include <fastdds/dds/subscriber/DataReader.hpp>
-#include <fastdds/dds/subscriber/DataReaderListener.hpp>
-#include <fastdds/dds/subscriber/SampleInfo.hpp>
 
 #include "base/error.hpp"
+#include "dds/fastdds.hpp"
 #include "dds/participant_impl.hpp"
 #include "dds/qos.hpp"
 #include "dds/raw_type.hpp"
 
 namespace baton::dds {
 namespace {
-using namespace eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
+using namespace fastdds::dds;
+namespace rtps = fastdds::rtps;
 
 /// Which participants an endpoint is matched with; several endpoints of one participant count once.
 class Matches {
@@ -60,12 +55,10 @@ void applyOptions(const EndpointOptions& options, Qos& qos) {
 }
 
 /// For ever, too, when it is longer than DDS can say.
-eprosima::fastrtps::Duration_t durationOf(std::int64_t duration_ns) {
+fastdds::Duration_t durationOf(std::int64_t duration_ns) {
   constexpr std::int64_t kSecond_ns = 1'000'000'000;
   const std::int64_t seconds = duration_ns / kSecond_ns;
-  if (duration_ns <= 0 || seconds >= eprosima::fastrtps::Time_t::INFINITE_SECONDS) {
-    return eprosima::fastrtps::c_TimeInfinite;
-  }
+  if (duration_ns <= 0 || seconds >= fastdds::kInfiniteSeconds) return fastdds::kForever;
   return {static_cast<std::int32_t>(seconds), static_cast<std::uint32_t>(duration_ns % kSecond_ns)};
 }
 
@@ -108,7 +101,7 @@ struct RawWriter::Impl final : DataWriterListener {
 
   bool write(std::span<const std::byte> payload, rtps::WriteParams& params) noexcept {
     RawType::Outgoing outgoing{payload};
-    if (!writer->write(&outgoing, params)) return false;
+    if (!fastdds::isDone(writer->write(&outgoing, params))) return false;
     ++count;
     return true;
   }
@@ -140,9 +133,8 @@ Guid RawWriter::guid() const { return toGuid(impl_->writer->guid()); }
 std::uint64_t RawWriter::count() const { return impl_->count; }
 
 bool RawWriter::waitForAcknowledgments(int timeout_ms) {
-  const eprosima::fastrtps::Duration_t timeout(timeout_ms / 1000,
-                                               static_cast<std::uint32_t>(timeout_ms % 1000) * 1'000'000U);
-  return impl_->writer->wait_for_acknowledgments(timeout) == ReturnCode_t::RETCODE_OK;
+  const fastdds::Duration_t timeout(timeout_ms / 1000, static_cast<std::uint32_t>(timeout_ms % 1000) * 1'000'000U);
+  return fastdds::isDone(impl_->writer->wait_for_acknowledgments(timeout));
 }
 
 struct RawReader::Impl final : DataReaderListener {
@@ -166,7 +158,7 @@ struct RawReader::Impl final : DataReaderListener {
 
   void on_data_available(DataReader* source) override {
     SampleInfo info;
-    while (source->take_next_sample(&incoming, &info) == ReturnCode_t::RETCODE_OK) {
+    while (fastdds::isDone(source->take_next_sample(&incoming, &info))) {
       if (!info.valid_data) continue;
       callback({.payload = incoming.payload,
                 .sequence = info.sample_identity.sequence_number().to64long(),

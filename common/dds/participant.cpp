@@ -1,29 +1,25 @@
 #include "dds/participant.hpp"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-#include <fastdds/rtps/transport/test_UDPv4TransportDescriptor.h>
 #include <algorithm>
-#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/log/Log.hpp>
 #include <sstream>
 #include <tuple>
 
 #include "base/error.hpp"
-#include "base/splitmix64.hpp"
+#include "dds/fastdds.hpp"
+#include "dds/lossy_transport.hpp"
 #include "dds/participant_impl.hpp"
 #include "dds/raw_type.hpp"
 #include "dds/thread_id.hpp"
 
 namespace baton::dds {
 namespace {
-using namespace eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
+using namespace fastdds::dds;
+namespace rtps = fastdds::rtps;
+namespace transport = fastdds::transport;
 
 constexpr int kMaxDomain = 232;
 constexpr int kSocketBuffer = 4 << 20;  // loopback UDP loses datagrams when a busy receiver's buffer is full
@@ -59,51 +55,44 @@ std::uint64_t loseOneIn() {
   return one_in;
 }
 
-template <class Transport>
-std::shared_ptr<Transport> loopbackUdp() {
-  auto udp = std::make_shared<Transport>();
+std::shared_ptr<transport::TransportDescriptorInterface> loopbackUdp() {
+  auto udp = std::make_shared<transport::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = {"127.0.0.1"};  // the default would open every interface of the machine
   udp->sendBufferSize = kSocketBuffer;
   udp->receiveBufferSize = kSocketBuffer;
   return udp;
 }
 
-/// Scatters the losses over the datagrams of this process; the count goes on whatever is sent again.
-bool isLost(std::uint64_t one_in) {
-  static std::atomic<std::uint64_t> count{0};
-  return splitmix(++count * kSplitmixStep) % one_in == 0;
-}
-
 /// "name: value" lines for what a writer promises beyond the usual; nothing for what it does not.
-std::string promisesText(const WriterQos& qos) {
-  const auto line = [](const char* name, const eprosima::fastrtps::Duration_t& duration) {
-    return duration == eprosima::fastrtps::c_TimeInfinite ? "" : name + std::to_string(duration.to_ns()) + "\n";
+std::string promisesText(const fastdds::PublicationData& qos) {
+  const auto line = [](const char* name, const fastdds::Duration_t& duration) {
+    return duration == fastdds::kForever ? "" : name + std::to_string(duration.to_ns()) + "\n";
   };
-  std::string text = line("deadline_ns: ", qos.m_deadline.period);
-  if (qos.m_liveliness.kind == MANUAL_BY_PARTICIPANT_LIVELINESS_QOS) text += "liveliness: manual_by_participant\n";
-  if (qos.m_liveliness.kind == MANUAL_BY_TOPIC_LIVELINESS_QOS) text += "liveliness: manual_by_topic\n";
-  text += line("lease_ns: ", qos.m_liveliness.lease_duration);
-  if (qos.m_ownership.kind == EXCLUSIVE_OWNERSHIP_QOS) {
-    text += "ownership_strength: " + std::to_string(qos.m_ownershipStrength.value) + "\n";
+  std::string text = line("deadline_ns: ", qos.deadline.period);
+  if (qos.liveliness.kind == MANUAL_BY_PARTICIPANT_LIVELINESS_QOS) text += "liveliness: manual_by_participant\n";
+  if (qos.liveliness.kind == MANUAL_BY_TOPIC_LIVELINESS_QOS) text += "liveliness: manual_by_topic\n";
+  text += line("lease_ns: ", qos.liveliness.lease_duration);
+  if (qos.ownership.kind == EXCLUSIVE_OWNERSHIP_QOS) {
+    text += "ownership_strength: " + std::to_string(qos.ownership_strength.value) + "\n";
   }
   return text;
 }
 
 /// "policy: value" lines for what no reader of ours asks for; nothing for what is as it is by default.
-std::string policiesText(const WriterQos& qos) {
+std::string policiesText(const fastdds::PublicationData& qos) {
   std::string text;
-  if (const auto& life = qos.m_lifespan.duration; life != eprosima::fastrtps::c_TimeInfinite) {
+  if (const auto& life = qos.lifespan.duration; life != fastdds::kForever) {
     text += "lifespan_ns: " + std::to_string(life.to_ns()) + "\n";
   }
-  if (const auto& budget = qos.m_latencyBudget.duration; budget != eprosima::fastrtps::c_TimeZero) {
+  if (const auto& budget = qos.latency_budget.duration; budget != fastdds::kNoTime) {
     text += "latency_budget_ns: " + std::to_string(budget.to_ns()) + "\n";
   }
-  if (qos.m_destinationOrder.kind == BY_SOURCE_TIMESTAMP_DESTINATIONORDER_QOS) {
+  if (qos.destination_order.kind == BY_SOURCE_TIMESTAMP_DESTINATIONORDER_QOS) {
     text += "destination_order: by_source_timestamp\n";
   }
-  if (qos.m_presentation.access_scope == TOPIC_PRESENTATION_QOS) text += "presentation: topic\n";
-  if (qos.m_presentation.access_scope == GROUP_PRESENTATION_QOS) text += "presentation: group\n";
-  for (const std::string& partition : qos.m_partition.getNames()) text += "partition: " + partition + "\n";
+  if (qos.presentation.access_scope == TOPIC_PRESENTATION_QOS) text += "presentation: topic\n";
+  if (qos.presentation.access_scope == GROUP_PRESENTATION_QOS) text += "presentation: group\n";
+  for (const std::string& partition : qos.partition.getNames()) text += "partition: " + partition + "\n";
   return text;
 }
 
@@ -116,16 +105,10 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
   qos.user_data().data_vec({data.begin(), data.end()});
 
   qos.transport().use_builtin_transports = false;
-  if (const std::uint64_t one_in = loseOneIn(); one_in > 0) {
-    auto udp = loopbackUdp<eprosima::fastdds::rtps::test_UDPv4TransportDescriptor>();
-    udp->messages_filter_ = [one_in](rtps::CDRMessage_t&) { return isLost(one_in); };
-    qos.transport().user_transports.push_back(udp);
-  } else {
-    qos.transport().user_transports.push_back(loopbackUdp<eprosima::fastdds::rtps::UDPv4TransportDescriptor>());
-  }
+  const std::uint64_t one_in = loseOneIn();
+  qos.transport().user_transports.push_back(one_in > 0 ? losing(one_in, loopbackUdp()) : loopbackUdp());
   if (options.transport == Transport::kSharedMemory) {
-    qos.transport().user_transports.push_back(
-        std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>());
+    qos.transport().user_transports.push_back(std::make_shared<transport::SharedMemTransportDescriptor>());
   }
 
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
@@ -137,8 +120,7 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
   discovery.leaseDuration = {3600, 0};
   discovery.initial_announcements.count = 5;
   discovery.initial_announcements.period = {0, 20'000'000};
-  qos.wire_protocol().builtin.typelookup_config.use_client = false;
-  qos.wire_protocol().builtin.typelookup_config.use_server = false;
+  fastdds::propagateNoTypes(qos);
   return qos;
 }
 
@@ -187,16 +169,14 @@ Participant::Impl::~Impl() {
   DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
-void Participant::Impl::on_participant_discovery(DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) {
-  const GuidPrefix prefix = toPrefix(info.info.m_guid);
-  if (info.status != rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT &&
-      info.status != rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT) {
-    const std::lock_guard lock(mutex);
-    peers.erase(prefix);
-    return;
-  }
-  const auto& data = info.info.m_userData;
-  const std::optional<Peer> peer = decodePeer({data.begin(), data.end()}, prefix);
+void Participant::Impl::onParticipantGone(const rtps::GUID_t& guid) {
+  const std::lock_guard lock(mutex);
+  peers.erase(toPrefix(guid));
+}
+
+void Participant::Impl::onParticipant(const fastdds::ParticipantData& data) {
+  const GuidPrefix prefix = toPrefix(data.guid);
+  const std::optional<Peer> peer = decodePeer({data.user_data.begin(), data.user_data.end()}, prefix);
   if (!peer) return;
   {
     const std::lock_guard lock(mutex);
@@ -205,28 +185,28 @@ void Participant::Impl::on_participant_discovery(DomainParticipant*, rtps::Parti
   if (on_peer) on_peer(*peer);
 }
 
-void Participant::Impl::on_publisher_discovery(DomainParticipant*, rtps::WriterDiscoveryInfo&& info) {
+void Participant::Impl::onWriterGone(const rtps::GUID_t& guid) {
   const std::lock_guard watch_lock(watch_mutex);
-  if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
-    const std::lock_guard lock(mutex);
-    writers.erase(toGuid(info.info.guid()));
-    return;
-  }
-  const auto& qos = info.info.m_qos;
-  DiscoveredWriter writer{.guid = toGuid(info.info.guid()),
-                          .topic = info.info.topicName().to_string(),
-                          .type = info.info.typeName().to_string(),
-                          .keyed = info.info.topicKind() == rtps::WITH_KEY,
-                          .exclusive_ownership = qos.m_ownership.kind == EXCLUSIVE_OWNERSHIP_QOS,
-                          .reliable = qos.m_reliability.kind == RELIABLE_RELIABILITY_QOS,
-                          .transient_local = qos.m_durability.kind >= TRANSIENT_LOCAL_DURABILITY_QOS,
+  const std::lock_guard lock(mutex);
+  writers.erase(toGuid(guid));
+}
+
+void Participant::Impl::onWriter(const fastdds::PublicationData& data) {
+  const std::lock_guard watch_lock(watch_mutex);
+  DiscoveredWriter writer{.guid = toGuid(data.guid),
+                          .topic = std::string(data.topic_name),
+                          .type = std::string(data.type_name),
+                          .keyed = data.topic_kind == rtps::WITH_KEY,
+                          .exclusive_ownership = data.ownership.kind == EXCLUSIVE_OWNERSHIP_QOS,
+                          .reliable = data.reliability.kind == RELIABLE_RELIABILITY_QOS,
+                          .transient_local = data.durability.kind >= TRANSIENT_LOCAL_DURABILITY_QOS,
                           .partitions = {},
                           .qos_text = {}};
-  for (const auto& partition : qos.m_partition.getNames()) writer.partitions.emplace_back(partition);
+  for (const auto& partition : data.partition.getNames()) writer.partitions.emplace_back(partition);
   writer.qos_text = std::string("reliability: ") + (writer.reliable ? "reliable" : "best_effort") +
                     "\ndurability: " + (writer.transient_local ? "transient_local" : "volatile") +
                     "\nownership: " + (writer.exclusive_ownership ? "exclusive" : "shared") +
-                    "\nkeyed: " + (writer.keyed ? "true" : "false") + "\n" + promisesText(qos) + policiesText(qos);
+                    "\nkeyed: " + (writer.keyed ? "true" : "false") + "\n" + promisesText(data) + policiesText(data);
   {
     const std::lock_guard lock(mutex);
     writers[writer.guid] = writer;

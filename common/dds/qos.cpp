@@ -1,8 +1,10 @@
 #include "dds/qos.hpp"
 
+#include <algorithm>
+
 namespace baton::dds {
 namespace {
-using namespace eprosima::fastdds::dds;
+using namespace fastdds::dds;
 
 struct ProfileValues {
   DurabilityQosPolicyKind durability;
@@ -44,7 +46,7 @@ void applyCommon(Profile profile, int depth, Qos& qos) {
   qos.resource_limits().allocated_samples = std::min(depth, 8);
   // Its default lets a reader that is killed abort the writer's process.
   qos.data_sharing().off();
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = fastdds::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
 }
 }  // namespace
 
@@ -52,11 +54,12 @@ void applyProfile(Profile profile, DataWriterQos& qos) {
   applyCommon(profile, valuesOf(profile).writer_depth, qos);
   qos.publish_mode().kind = SYNCHRONOUS_PUBLISH_MODE;
   // A lost datagram is noticed within one heartbeat; the default of 3 s would stall a lockstep loop that long.
-  qos.reliable_writer_qos().times.heartbeatPeriod = {0, 20'000'000};
-  qos.reliable_writer_qos().times.nackResponseDelay = {0, 0};
+  const auto times = fastdds::timesOf(qos);
+  times.heartbeat_period = {0, 20'000'000};
+  times.nack_response_delay = {0, 0};
   // How long what was just sent may still be on its way, and asking for it again goes unheard. With the default of 0 a
   // timer runs out behind every sample to every reader: a thread is woken each time, which costs a third of a step.
-  qos.reliable_writer_qos().times.nackSupressionDuration = {0, 10'000'000};
+  times.nack_suppression_duration = {0, 10'000'000};
   // Otherwise every sample behind a full history, which is every one from step 1024 on, carries a heartbeat to every
   // reader, each of which answers it.
   qos.reliable_writer_qos().disable_heartbeat_piggyback = true;
@@ -64,8 +67,9 @@ void applyProfile(Profile profile, DataWriterQos& qos) {
 
 void applyProfile(Profile profile, DataReaderQos& qos) {
   applyCommon(profile, valuesOf(profile).reader_depth, qos);
-  qos.reliable_reader_qos().times.initialAcknackDelay = {0, 5'000'000};
-  qos.reliable_reader_qos().times.heartbeatResponseDelay = {0, 1'000'000};
+  const auto times = fastdds::timesOf(qos);
+  times.initial_acknack_delay = {0, 5'000'000};
+  times.heartbeat_response_delay = {0, 1'000'000};
 }
 
 }  // namespace baton::dds

@@ -1,26 +1,22 @@
 /// The one type support Baton registers: it moves serialized payloads in and out untouched. Typed endpoints serialise
-/// before and after it, so that recorder, replayer, hashes and typed code all see the same bytes. Private to
-/// common/dds.
+/// before and after it, so that recorder, replayer, hashes and typed code all see the same bytes. It advertises no type
+/// objects, which make Cyclone DDS refuse the match. Private to common/dds.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
-#include <fastdds/dds/topic/TopicDataType.hpp>
 #include <span>
-#include <string>
 #include <vector>
+
+#include "dds/fastdds.hpp"
 
 namespace baton::dds {
 
-class RawType final : public eprosima::fastdds::dds::TopicDataType {
+/// Baton's own topics have no keys; a foreign keyed topic carries its key hash in-line.
+class RawType final : public fastdds::BytesType {
  public:
-  RawType(const std::string& type_name, std::uint32_t max_payload, bool keyed) {
-    setName(type_name.c_str());
-    m_typeSize = max_payload;
-    m_isGetKeyDefined = keyed;
-    // Advertising type objects makes Cyclone DDS refuse the match.
-    auto_fill_type_object(false);
-    auto_fill_type_information(false);
-  }
+  using BytesType::BytesType;
 
   /// What write() is given.
   struct Outgoing {
@@ -31,32 +27,28 @@ class RawType final : public eprosima::fastdds::dds::TopicDataType {
     std::vector<std::byte> payload;
   };
 
-  bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
+  [[nodiscard]] bool put(const void* data, fastdds::rtps::SerializedPayload_t& payload) const override {
     const auto& outgoing = *static_cast<const Outgoing*>(data);
-    if (outgoing.payload.size() > payload->max_size) return false;
-    std::memcpy(payload->data, outgoing.payload.data(), outgoing.payload.size());
-    payload->length = static_cast<std::uint32_t>(outgoing.payload.size());
-    payload->encapsulation =
+    if (outgoing.payload.size() > payload.max_size) return false;
+    std::memcpy(payload.data, outgoing.payload.data(), outgoing.payload.size());
+    payload.length = static_cast<std::uint32_t>(outgoing.payload.size());
+    payload.encapsulation =
         static_cast<std::uint16_t>(outgoing.payload.size() > 1 ? outgoing.payload[1] : std::byte{1});
     return true;
   }
 
-  bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override {
+  [[nodiscard]] bool take(const fastdds::rtps::SerializedPayload_t& payload, void* data) const override {
     auto& incoming = *static_cast<Incoming*>(data);
-    const auto* begin = reinterpret_cast<const std::byte*>(payload->data);
-    incoming.payload.assign(begin, begin + payload->length);
+    const auto* begin = reinterpret_cast<const std::byte*>(payload.data);
+    incoming.payload.assign(begin, begin + payload.length);
     return true;
   }
 
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    const auto size = static_cast<std::uint32_t>(static_cast<const Outgoing*>(data)->payload.size());
-    return [size] { return size; };
+  [[nodiscard]] std::uint32_t sizeOf(const void* data) const override {
+    return static_cast<std::uint32_t>(static_cast<const Outgoing*>(data)->payload.size());
   }
-
-  void* createData() override { return new Incoming; }
-  void deleteData(void* data) override { delete static_cast<Incoming*>(data); }
-  /// Baton's own topics have no keys; a foreign keyed topic carries its key hash in-line.
-  bool getKey(void*, eprosima::fastrtps::rtps::InstanceHandle_t*, bool) override { return false; }
+  [[nodiscard]] void* make() const override { return new Incoming; }
+  void destroy(void* data) const override { delete static_cast<Incoming*>(data); }
 };
 
 }  // namespace baton::dds

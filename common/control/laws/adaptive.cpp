@@ -38,7 +38,7 @@ namespace {
 
 /// What multiplies Y^T s in Th', parameter by parameter; zero for what is not estimated.
 DynamicParameters learningRates(const RobotModel& model, const ParameterValues& values) {
-  const std::string& adaptation = choice(values, "adaptation");
+  const std::string adaptation = choice(values, "adaptation");
   const double k = number(values, "k");
   const double rate = adaptation == "on" ? 1.0 / k : adaptation == "times_k" ? k : 0.0;
   const DynamicParameters pi = dynamicParameters(model);

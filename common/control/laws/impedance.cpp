@@ -25,7 +25,7 @@ class Impedance final : public Law {
         md_(vector<Vector6>(values, "md")),
         kd_(vector<Vector6>(values, "kd")),
         kp_(vector<Vector6>(values, "kp")) {
-    const std::string& form = choice(values, "form");
+    const std::string form = choice(values, "form");
     wrench_in_effort_ = form == "corrected" ? 1.0 : form == "as_printed" ? -1.0 : 0.0;
     wrench_in_y_ = form == "corrected" ? 1.0 : 0.0;
   }

@@ -1,16 +1,14 @@
 #include "raw_node.hpp"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <stdexcept>
 
 namespace raw {
 namespace {
-using namespace eprosima::fastdds::dds;
+using namespace baton::fastdds::dds;
+namespace transport = baton::fastdds::transport;
 
 constexpr int kDepth = 1024;
 constexpr int kSocketBuffer = 4 << 20;
@@ -18,14 +16,13 @@ constexpr int kSocketBuffer = 4 << 20;
 DomainParticipantQos participantQos(bool shared_memory) {
   DomainParticipantQos qos = DomainParticipantFactory::get_instance()->get_default_participant_qos();
   qos.transport().use_builtin_transports = false;
-  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  auto udp = std::make_shared<transport::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = {"127.0.0.1"};
   udp->sendBufferSize = kSocketBuffer;
   udp->receiveBufferSize = kSocketBuffer;
   qos.transport().user_transports.push_back(udp);
   if (shared_memory) {
-    qos.transport().user_transports.push_back(
-        std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>());
+    qos.transport().user_transports.push_back(std::make_shared<transport::SharedMemTransportDescriptor>());
   }
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
   discovery.leaseDuration_announcementperiod = {0, 100'000'000};
@@ -46,7 +43,7 @@ void setLoopQos(Qos& qos) {
   qos.resource_limits().max_samples_per_instance = kDepth + 1;
   qos.resource_limits().allocated_samples = 64;
   qos.data_sharing().off();
-  qos.endpoint().history_memory_policy = eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = baton::fastdds::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
 }
 
 template <class Entity>
@@ -90,9 +87,10 @@ DataWriter* Node::createWriter(const TypeSupport& type, const std::string& topic
   DataWriterQos qos = publisher_->get_default_datawriter_qos();
   setLoopQos(qos);
   qos.publish_mode().kind = SYNCHRONOUS_PUBLISH_MODE;
-  qos.reliable_writer_qos().times.heartbeatPeriod = {0, 20'000'000};
-  qos.reliable_writer_qos().times.nackResponseDelay = {0, 0};
-  qos.reliable_writer_qos().times.nackSupressionDuration = {0, 10'000'000};
+  const auto times = baton::fastdds::timesOf(qos);
+  times.heartbeat_period = {0, 20'000'000};
+  times.nack_response_delay = {0, 0};
+  times.nack_suppression_duration = {0, 10'000'000};
   qos.reliable_writer_qos().disable_heartbeat_piggyback = true;
   return made(publisher_->create_datawriter(createTopic(type, topic), qos), "a writer on " + topic);
 }
@@ -100,8 +98,9 @@ DataWriter* Node::createWriter(const TypeSupport& type, const std::string& topic
 DataReader* Node::createReader(const TypeSupport& type, const std::string& topic, DataReaderListener* listener) {
   DataReaderQos qos = subscriber_->get_default_datareader_qos();
   setLoopQos(qos);
-  qos.reliable_reader_qos().times.initialAcknackDelay = {0, 5'000'000};
-  qos.reliable_reader_qos().times.heartbeatResponseDelay = {0, 1'000'000};
+  const auto times = baton::fastdds::timesOf(qos);
+  times.initial_acknack_delay = {0, 5'000'000};
+  times.heartbeat_response_delay = {0, 1'000'000};
   return made(subscriber_->create_datareader(createTopic(type, topic), qos, listener, StatusMask::data_available()),
               "a reader on " + topic);
 }

@@ -1,24 +1,18 @@
 /// The yardstick's share of Fast DDS: a participant, and readers and writers of generated types, straight from the
 /// product's API. Transports, discovery and QoS have the values that idl/README.md gives Baton's loop topics; nothing
-/// of Baton but the generated types is used.
+/// of Baton is used but the generated types and the names that Fast DDS 2 and 3 have in common.
 #pragma once
 
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/publisher/DataWriter.hpp>
-#include <fastdds/dds/publisher/Publisher.hpp>
-#include <fastdds/dds/subscriber/DataReader.hpp>
-#include <fastdds/dds/subscriber/DataReaderListener.hpp>
-#include <fastdds/dds/subscriber/SampleInfo.hpp>
-#include <fastdds/dds/subscriber/Subscriber.hpp>
-#include <fastdds/dds/topic/TypeSupport.hpp>
 #include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "dds/fastdds.hpp"
+
 namespace raw {
-namespace dds = eprosima::fastdds::dds;
+namespace dds = baton::fastdds::dds;
 
 struct Network {
   int domain = 0;
@@ -60,7 +54,7 @@ class Node {
     explicit Listener(std::function<void(const Message&)> on_sample) : on_sample_(std::move(on_sample)) {}
     void on_data_available(dds::DataReader* reader) override {
       dds::SampleInfo info;
-      while (reader->take_next_sample(&message_, &info) == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+      while (baton::fastdds::isDone(reader->take_next_sample(&message_, &info))) {
         if (info.valid_data) on_sample_(message_);
       }
     }

@@ -55,7 +55,7 @@ void stamp(Message& message, std::uint64_t step) {
 }
 
 void write(dds::DataWriter* writer, void* message) {
-  if (!writer->write(message)) fail("DDS refused a sample");
+  if (!baton::fastdds::isDone(writer->write(message))) fail("DDS refused a sample");
 }
 
 class ChainPlant final : public Plant {

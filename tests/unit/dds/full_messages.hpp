@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "msg/cdr.hpp"
 #include "msg/checkpoint.h"
 #include "msg/decision.h"
 #include "msg/loop.h"
@@ -27,6 +28,16 @@ using AllTypes =
                    msg::LaunchRequest, msg::LaunchReply, msg::ServiceStatus, msg::Event, msg::StreamManifest,
                    msg::ServiceManifest, msg::WriterLoss, msg::RecorderStatus, msg::RecordRequest, msg::RecordReply,
                    msg::ReplayStatus, msg::ReplayRequest, msg::ReplayReply>;
+
+/// Header and body of a message's payload, without the filling up to a multiple of four.
+template <class T>
+std::size_t unfilledSize(const T& message) {
+  msg::FastBuffer growing;
+  msg::PlainCdr cdr(growing);
+  cdr.serialize_encapsulation();
+  cdr << message;
+  return cdr.length();
+}
 
 inline constexpr std::uint64_t kId = 0xFEDC'BA98'7654'3210;
 inline constexpr std::int64_t kTime = -0x0123'4567'89AB'CDEF;

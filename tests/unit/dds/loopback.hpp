@@ -2,8 +2,6 @@
 /// waiting for what happens. The deadline is generous and only ever fails a test.
 #pragma once
 
-#include <fastrtps/attributes/LibrarySettingsAttributes.h>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -12,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "dds/fastdds.hpp"
 #include "dds/participant.hpp"
 #include "dds/types.hpp"
 
@@ -24,9 +23,7 @@ inline std::string testPartition(const std::string& name) { return "unit-" + std
 inline dds::ParticipantOptions memberOptions(const std::string& service, const std::string& partition) {
   // By default endpoints of one process hand samples over without the transport.
   static const bool through_the_transport = [] {
-    eprosima::fastrtps::LibrarySettingsAttributes settings;
-    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+    fastdds::deliverThroughTheTransport();
     return true;
   }();
   (void)through_the_transport;

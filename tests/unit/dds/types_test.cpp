@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <functional>
+#include <map>
 #include <random>
 #include <regex>
 #include <set>
@@ -135,6 +138,31 @@ TEST(IdlTexts, EveryTypeIsListedOnceAndDefinedInItsText) {
     const std::string bare(entry.type_name.substr(entry.type_name.rfind(':') + 1));
     EXPECT_TRUE(entry.type_name == "baton::msg::" + bare);
     EXPECT_TRUE(std::regex_search(std::string(entry.text), std::regex("struct +" + bare + " *\\{"))) << bare;
+  }
+}
+
+/// The bound of every sequence and string of the IDL is a number, which not every tool can do without (idl/README.md).
+TEST(IdlTexts, BoundsAreTheConstantsThatTheServicesKnow) {
+  const std::map<std::string, std::int64_t, std::less<>> bounds{{"double", msg::MAX_JOINTS},
+                                                                {"octet", msg::MAX_CHECKPOINT},
+                                                                {"string<32>", msg::MAX_WORDS},
+                                                                {"baton::msg::Parameter", msg::MAX_PARAMETERS},
+                                                                {"baton::msg::ParameterValue", msg::MAX_PARAMETERS},
+                                                                {"baton::msg::BatonMember", msg::MAX_CONTROLLERS},
+                                                                {"baton::msg::StreamManifest", msg::MAX_STREAMS},
+                                                                {"baton::msg::WriterLoss", msg::MAX_LOSSES}};
+  const std::set<std::int64_t> texts{64, 120, 200, 400, 2000};  // the bounds of strings that are no names
+  const std::regex sequence(R"(sequence<(.+?), *(\w+)>)"), string(R"(string<(\w+)>)");
+  for (const msg::IdlText& entry : msg::allIdlTexts()) {
+    const std::string text(entry.text);
+    for (std::sregex_iterator it(text.begin(), text.end(), sequence), end; it != end; ++it) {
+      ASSERT_TRUE(bounds.contains((*it)[1].str())) << it->str() << ": teach this test its bound";
+      EXPECT_EQ((*it)[2].str(), std::to_string(bounds.at((*it)[1].str()))) << it->str();
+    }
+    for (std::sregex_iterator it(text.begin(), text.end(), string), end; it != end; ++it) {
+      const std::string bound = (*it)[1];
+      EXPECT_TRUE(bound == std::to_string(msg::MAX_NAME) || texts.contains(std::atoll(bound.c_str()))) << it->str();
+    }
   }
 }
 

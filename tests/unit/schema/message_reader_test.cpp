@@ -74,17 +74,16 @@ class Rewriter {
 
 template <class T>
 Payload encoded(const T& message, bool is_little_endian) {
-  using eprosima::fastcdr::Cdr;
   Payload buffer(dds::maxPayload<T>());
   if (is_little_endian) {
     buffer.resize(dds::encode(message, std::span(buffer)).size());
     return buffer;
   }
-  eprosima::fastcdr::FastBuffer fast(reinterpret_cast<char*>(buffer.data()), buffer.size());
-  Cdr cdr(fast, Cdr::BIG_ENDIANNESS, Cdr::DDS_CDR);
+  msg::FastBuffer fast(reinterpret_cast<char*>(buffer.data()), buffer.size());
+  msg::PlainCdr cdr(fast, msg::PlainCdr::BIG_ENDIANNESS);
   cdr.serialize_encapsulation();
-  message.serialize(cdr);
-  buffer.resize(cdr.getSerializedDataLength());
+  cdr << message;
+  buffer.resize(cdr.length());
   return buffer;
 }
 
@@ -143,7 +142,7 @@ TYPED_TEST(EveryType, IsRefusedWhenItEndsTooEarly) {
   const TypeSet types = withType(name);
   const Type& type = *types.find(name);
   const Payload payload = encoded(test::full<TypeParam>(), true);
-  const std::size_t unfilled = 4 + TypeParam::getCdrSerializedSize(test::full<TypeParam>());
+  const std::size_t unfilled = test::unfilledSize(test::full<TypeParam>());
   const std::size_t stride = payload.size() > 2000 ? 7 : 1;
   for (std::size_t size = 0; size < unfilled; size += stride) {
     EXPECT_NE(errorOf(type, std::span(payload).first(size)), "") << name << " of " << size;
