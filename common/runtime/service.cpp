@@ -9,6 +9,7 @@
 #include <cmath>
 #include <csignal>
 #include <ctime>
+#include <stdexcept>
 #include <utility>
 
 namespace baton {
@@ -80,7 +81,15 @@ void Service::require(const std::string& topic, std::function<std::set<dds::Guid
 
 void Service::addToManifest(dds::Profile profile, std::function<msg::StreamManifest()> manifest) {
   // A status is only ever its latest word: what it replaced is not missing from a recording.
-  if (profile != dds::Profile::kStatus) manifests_.push_back(std::move(manifest));
+  if (profile == dds::Profile::kStatus) return;
+  // One more and the manifest could not be encoded: the recording would be incomplete, with no word why.
+  if (manifests_.size() == msg::MAX_STREAMS) {
+    throw std::logic_error(
+        fmt::format("{}: expected at most {} streams, as many as ServiceManifest in idl/service.idl "
+                    "holds, found one more: raise MAX_STREAMS and the bound of streams there",
+                    options_.name, static_cast<int>(msg::MAX_STREAMS)));
+  }
+  manifests_.push_back(std::move(manifest));
 }
 
 bool Service::isRival(const dds::Peer& peer) const {

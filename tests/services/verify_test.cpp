@@ -42,7 +42,7 @@ class VerifyTest : public testing::Test {
 
 TEST_F(VerifyTest, AWholeRecordingIsProvenComplete) {
   const Verification found = verifyWith({});
-  EXPECT_EQ(found.verdict(), Verdict::kComplete) << all(found);
+  EXPECT_EQ(found.verdict(), RecordingVerdict::kComplete) << all(found);
   EXPECT_EQ(all(found), "");
   EXPECT_EQ(found.ledger.manifests(), 3U);
   EXPECT_EQ(found.messages, 3 * 200U + 3U);
@@ -52,7 +52,7 @@ TEST_F(VerifyTest, AWholeRecordingIsProvenComplete) {
 TEST_F(VerifyTest, WhatTheRecorderSawMissingIsMissing) {
   for (const std::uint64_t at : {1U, 100U, 200U}) {
     const Verification found = verifyWith({.leave_out = at});
-    EXPECT_EQ(found.verdict(), Verdict::kIncomplete) << at;
+    EXPECT_EQ(found.verdict(), RecordingVerdict::kIncomplete) << at;
     EXPECT_TRUE(mentions(found.missing, "200 samples sent, 199 recorded")) << all(found);
     EXPECT_FALSE(mentions(found.missing, "certificate")) << "it says the same\n" << all(found);
   }
@@ -62,7 +62,7 @@ TEST_F(VerifyTest, ACertificateThatSaysMoreThanTheBytesIsNotBelieved) {
   for (const RecordingPlan& plan :
        {RecordingPlan{.leave_out = 100, .is_seen = false}, RecordingPlan{.change = 100, .is_seen = false}}) {
     const Verification found = verifyWith(plan);
-    EXPECT_EQ(found.verdict(), Verdict::kIncomplete);
+    EXPECT_EQ(found.verdict(), RecordingVerdict::kIncomplete);
     EXPECT_TRUE(mentions(found.missing, "the certificate says complete, the bytes do not")) << all(found);
     EXPECT_TRUE(mentions(found.missing, "the certificate says otherwise of state")) << all(found);
   }
@@ -70,13 +70,13 @@ TEST_F(VerifyTest, ACertificateThatSaysMoreThanTheBytesIsNotBelieved) {
 
 TEST_F(VerifyTest, OtherBytesThanThoseSentAreNoticed) {
   const Verification found = verifyWith({.change = 7});
-  EXPECT_EQ(found.verdict(), Verdict::kIncomplete);
+  EXPECT_EQ(found.verdict(), RecordingVerdict::kIncomplete);
   EXPECT_TRUE(mentions(found.missing, "the recorded bytes are not those sent")) << all(found);
 }
 
 TEST_F(VerifyTest, MessagesThatComeTwiceAreNoticed) {
   const Verification found = verifyWith({.repeat = 7});
-  EXPECT_EQ(found.verdict(), Verdict::kIncomplete);
+  EXPECT_EQ(found.verdict(), RecordingVerdict::kIncomplete);
   EXPECT_TRUE(mentions(found.missing, "1 messages come twice")) << all(found);
 }
 
@@ -84,23 +84,23 @@ TEST_F(VerifyTest, WithoutTheWordOfEverybodyNothingIsProven) {
   EXPECT_TRUE(mentions(verifyWith({.silent = "plant"}).missing, "plant sent no manifest"));
   EXPECT_TRUE(mentions(verifyWith({.has_certificate = false}).missing, "it has no certificate"));
   const Verification dropped = verifyWith({.dropped = 3});
-  EXPECT_EQ(dropped.verdict(), Verdict::kIncomplete) << "the bytes cannot tell, the certificate does";
+  EXPECT_EQ(dropped.verdict(), RecordingVerdict::kIncomplete) << "the bytes cannot tell, the certificate does";
   EXPECT_TRUE(mentions(dropped.missing, "last_sequence 203, the bytes give 200")) << all(dropped);
 }
 
 TEST_F(VerifyTest, SequenceNumbersMayOutgrowTheirFieldInTheFile) {
   const Verification found = verifyWith({.first_sequence = 0xFFFF'FFF0});
-  EXPECT_EQ(found.verdict(), Verdict::kComplete) << all(found);
+  EXPECT_EQ(found.verdict(), RecordingVerdict::kComplete) << all(found);
 }
 
 TEST_F(VerifyTest, PartsAreBookedAsOneInWhateverOrderTheyAreGiven) {
   std::vector<std::string> files = write({.parts = 4});
   ASSERT_EQ(files.size(), 4U);
-  EXPECT_EQ(verify(files).verdict(), Verdict::kComplete) << all(verify(files));
+  EXPECT_EQ(verify(files).verdict(), RecordingVerdict::kComplete) << all(verify(files));
   std::swap(files[0], files[3]);
   std::swap(files[0], files[1]);
   const Verification found = verify(files);
-  EXPECT_EQ(found.verdict(), Verdict::kComplete) << all(found);
+  EXPECT_EQ(found.verdict(), RecordingVerdict::kComplete) << all(found);
   EXPECT_TRUE(std::is_sorted(found.files.begin() + 1, found.files.end()));
 }
 
@@ -110,7 +110,7 @@ TEST_F(VerifyTest, APartThatIsMissingIsNamed) {
     std::vector<std::string> some = files;
     some.erase(some.begin() + static_cast<std::ptrdiff_t>(left_out));
     const Verification found = verify(some);
-    EXPECT_EQ(found.verdict(), Verdict::kIncomplete) << left_out;
+    EXPECT_EQ(found.verdict(), RecordingVerdict::kIncomplete) << left_out;
     const std::string part = left_out == 3 ? "run_0003.mcap, in which it goes on," : "part " + std::to_string(left_out);
     const std::string words = part + " is not among";
     EXPECT_TRUE(mentions(found.missing, words)) << all(found);
@@ -121,7 +121,7 @@ TEST_F(VerifyTest, APartAloneSaysWhichOneItIsAndWhereTheOthersAre) {
   const std::vector<std::string> files = write({.parts = 4});
   const auto wordsOf = [](const std::string& file) {
     const Verification found = verify({file});
-    EXPECT_EQ(found.verdict(), Verdict::kIncomplete);
+    EXPECT_EQ(found.verdict(), RecordingVerdict::kIncomplete);
     return found.missing.at(0);
   };
   EXPECT_TRUE(
@@ -155,7 +155,7 @@ TEST_F(VerifyTest, ARecordingOfSomebodyElseIsNotProven) {
     writer.close();
   }
   const Verification found = verify({file});
-  EXPECT_EQ(found.verdict(), Verdict::kIncomplete);
+  EXPECT_EQ(found.verdict(), RecordingVerdict::kIncomplete);
   EXPECT_TRUE(mentions(found.missing, "not recorded by Baton")) << all(found);
 }
 
@@ -175,20 +175,20 @@ TEST_F(VerifyTest, AnyChangedByteIsFound) {
     SCOPED_TRACE("byte " + std::to_string(at) + " of " + std::to_string(size));
     change(at);
     try {
-      const Verdict verdict = verify({file}).verdict();
-      EXPECT_NE(verdict, Verdict::kComplete);
+      const RecordingVerdict verdict = verify({file}).verdict();
+      EXPECT_NE(verdict, RecordingVerdict::kComplete);
     } catch (const UsageError&) {  // not a recording any more
     }
     change(at);
   }
-  EXPECT_EQ(verify({file}).verdict(), Verdict::kComplete);
+  EXPECT_EQ(verify({file}).verdict(), RecordingVerdict::kComplete);
 }
 
 TEST_F(VerifyTest, ACutRecordingIsCut) {
   const std::string file = write()[0];
   std::filesystem::resize_file(file, std::filesystem::file_size(file) - 1);
   const Verification found = verify({file});
-  EXPECT_EQ(found.verdict(), Verdict::kCut) << "all messages are there, but it does not end as it should";
+  EXPECT_EQ(found.verdict(), RecordingVerdict::kCut) << "all messages are there, but it does not end as it should";
   EXPECT_TRUE(found.missing.empty()) << all(found);
 }
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <fstream>
 #include <sstream>
@@ -66,7 +67,7 @@ fs::path programFolder() { return BATON_TEST_PROGRAMS; }
 fs::path deployFolder() { return BATON_TEST_DEPLOY; }
 
 Finished runProgram(const fs::path& program, const std::vector<std::string>& arguments, const fs::path& home) {
-  static int count = 0;
+  static std::atomic<int> count{0};  // tests call this from several threads
   const std::string stem = "call" + std::to_string(++count);
   const fs::path out = home / (stem + ".out");
   const fs::path err = home / (stem + ".err");

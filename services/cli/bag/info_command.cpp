@@ -58,13 +58,14 @@ struct BagSummary {
   }
 };
 
-Verdict verdictOn(const BagSummary& bag) {
-  if (!bag.damage.empty()) return Verdict::kDamaged;
-  if (!bag.info.is_complete) return Verdict::kCut;
+RecordingVerdict verdictOn(const BagSummary& bag) {
+  if (!bag.damage.empty()) return RecordingVerdict::kDamaged;
+  if (!bag.info.is_complete) return RecordingVerdict::kCut;
   // A finished file of somebody else has none; the parts of one recording have one, in the last.
   const bool needs_certificate = !bag.run.empty() && bag.next_part.empty();
   const bool is_certified = bag.certificate && valueOf(*bag.certificate, "complete") == "true";
-  return is_certified || (!bag.certificate && !needs_certificate) ? Verdict::kComplete : Verdict::kIncomplete;
+  return is_certified || (!bag.certificate && !needs_certificate) ? RecordingVerdict::kComplete
+                                                                  : RecordingVerdict::kIncomplete;
 }
 
 /// What the verdict rests on, in a sentence.

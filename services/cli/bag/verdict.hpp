@@ -5,29 +5,29 @@
 
 namespace baton {
 
-enum class Verdict {
+enum class RecordingVerdict {
   kComplete,    // finished, and nothing is missing
   kIncomplete,  // finished, but messages are missing, or nobody says that none are
   kCut,         // ends in the middle
   kDamaged      // parts of it cannot be read
 };
 
-[[nodiscard]] inline ExitCode exitCodeOf(Verdict verdict) {
+[[nodiscard]] inline ExitCode exitCodeOf(RecordingVerdict verdict) {
   switch (verdict) {
-    case Verdict::kComplete: return ExitCode::kOk;
-    case Verdict::kIncomplete:
-    case Verdict::kCut: return ExitCode::kFailed;
-    case Verdict::kDamaged: return ExitCode::kUsage;
+    case RecordingVerdict::kComplete: return ExitCode::kOk;
+    case RecordingVerdict::kIncomplete:
+    case RecordingVerdict::kCut: return ExitCode::kFailed;
+    case RecordingVerdict::kDamaged: return ExitCode::kUsage;
   }
   return ExitCode::kUsage;
 }
 
-[[nodiscard]] inline const char* nameOf(Verdict verdict) {
+[[nodiscard]] inline const char* nameOf(RecordingVerdict verdict) {
   switch (verdict) {
-    case Verdict::kComplete: return "complete";
-    case Verdict::kIncomplete: return "incomplete";
-    case Verdict::kCut: return "cut";
-    case Verdict::kDamaged: return "damaged";
+    case RecordingVerdict::kComplete: return "complete";
+    case RecordingVerdict::kIncomplete: return "incomplete";
+    case RecordingVerdict::kCut: return "cut";
+    case RecordingVerdict::kDamaged: return "damaged";
   }
   return "";
 }

@@ -219,10 +219,10 @@ void judge(const std::vector<Part>& parts, bool are_all, const std::optional<std
 
 }  // namespace
 
-Verdict Verification::verdict() const {
-  if (!damage.empty()) return Verdict::kDamaged;
-  if (!cuts.empty()) return Verdict::kCut;
-  return missing.empty() ? Verdict::kComplete : Verdict::kIncomplete;
+RecordingVerdict Verification::verdict() const {
+  if (!damage.empty()) return RecordingVerdict::kDamaged;
+  if (!cuts.empty()) return RecordingVerdict::kCut;
+  return missing.empty() ? RecordingVerdict::kComplete : RecordingVerdict::kIncomplete;
 }
 
 Verification verifyRecording(const std::vector<std::string>& files, const std::function<void(double)>& progress) {

@@ -22,7 +22,7 @@ struct Verification {
   std::uint64_t messages = 0;        // that could be read
   std::uint64_t bytes = 0;           // of the files
 
-  [[nodiscard]] Verdict verdict() const;
+  [[nodiscard]] RecordingVerdict verdict() const;
 };
 
 /// Reads everything, every checksum with it, and books each message as the recorder did: the accounts are held against

@@ -20,7 +20,7 @@ struct VerifyRequest {
 
 void printText(const Verification& found) {
   fmt::print("{}: {}\n", fmt::join(found.files, ", "), nameOf(found.verdict()));
-  if (found.verdict() == Verdict::kComplete) {
+  if (found.verdict() == RecordingVerdict::kComplete) {
     if (found.ledger.manifests() > 0) {
       fmt::print("            proven from the bytes: {} services vouch for what they sent, all of it is here\n",
                  found.ledger.manifests());
