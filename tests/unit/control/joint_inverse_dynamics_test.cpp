@@ -90,7 +90,7 @@ TEST(JointInverseDynamics, SaturatedStepPeaksAtTheEquationAndStillSettles) {
     ClosedLoop loop(robot, makeLaw("joint_inverse_dynamics", robot, stiff), kStep, zero,
                     [&](double) { return setPoint(robot, kTarget); });
     ASSERT_TRUE(loop.step());
-    const JointVector peak = massMatrixAt(robot, zero) * 2000.0 * kTarget + gravityAt(robot, zero);
+    const Vector3 peak = massMatrixAt(robot, zero) * 2000.0 * kTarget + gravityAt(robot, zero);
     EXPECT_LT((loop.tau - peak).norm(), 1e-10);
     EXPECT_NEAR(loop.tau(0), 713.0, 1.0);
     loop.run(5.0);
