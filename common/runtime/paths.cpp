@@ -41,18 +41,25 @@ fs::path stateFolder() {
 
 fs::path programFolder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
+bool isInstalled() {
+  const fs::path own = programFolder();
+  return !(fs::exists(own / "baton") && fs::exists(own / "baton-supervisor"));
+}
+
 fs::path siblingProgram(const std::string& name) {
-  fs::path path = programFolder() / name;
-  if (access(path.c_str(), X_OK) != 0) {
-    throw UnavailableError("the program " + path.string() + " is missing: build or install Baton again");
+  const fs::path own = programFolder();
+  for (const fs::path& folder : {own, own.parent_path() / "libexec/baton"}) {
+    if (fs::path path = folder / name; access(path.c_str(), X_OK) == 0) return path;
   }
-  return path;
+  throw UnavailableError("the program " + (own / name).string() + " is missing: build or install Baton again");
 }
 
 fs::path dataFolder() {
-  fs::path folder = programFolder().parent_path() / "share/baton";
-  if (fs::exists(folder / "scenarios")) return folder;
-  throw UnavailableError("expected Baton's scenarios and robots in " + folder.string() +
+  const fs::path above = programFolder().parent_path();
+  for (const fs::path& prefix : {above, above.parent_path()}) {
+    if (fs::path folder = prefix / "share/baton"; fs::exists(folder / "scenarios")) return folder;
+  }
+  throw UnavailableError("expected Baton's scenarios and robots in " + (above / "share/baton").string() +
                          ", found nothing: build or install Baton again, or give whole paths");
 }
 

@@ -1,4 +1,8 @@
-/// Where things are on this machine: programs, data and the folder of runs.
+/// Where things are on this machine: programs, data and the folder of runs. They find each other by their places, so a
+/// build and an installation can be moved as a whole:
+///
+///   a build          bin/{baton,baton-plant,...}                      share/baton/{scenarios,robots,...}
+///   an installation  bin/baton   libexec/baton/{baton-plant,...}      share/baton/{scenarios,robots,...}
 #pragma once
 
 #include <filesystem>
@@ -10,13 +14,16 @@ namespace baton {
 /// Throws UnavailableError when none of the variables is set or the folder cannot be made.
 [[nodiscard]] std::filesystem::path stateFolder();
 
-/// The folder this program's executable is in; Baton's programs stand side by side.
+/// The folder this program's executable is in.
 [[nodiscard]] std::filesystem::path programFolder();
 
-/// A sibling program such as "baton-plant". Throws UnavailableError when it is not there.
+/// Whether this program is of an installation, where people type `baton`; in a checkout they type deploy/baton.
+[[nodiscard]] bool isInstalled();
+
+/// Another of Baton's programs, such as "baton-plant". Throws UnavailableError when it is not there.
 [[nodiscard]] std::filesystem::path siblingProgram(const std::string& name);
 
-/// The folder of scenarios/ and robots/: share/baton beside the programs' folder, in an installation as in a build.
+/// The folder of scenarios/ and robots/. Throws UnavailableError when it is not there.
 [[nodiscard]] std::filesystem::path dataFolder();
 
 /// A scenario as a person names it: a path, or the bare name of one in dataFolder()/scenarios. Throws UsageError

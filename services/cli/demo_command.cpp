@@ -1,5 +1,6 @@
 #include "demo_command.hpp"
 
+#include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -98,12 +99,14 @@ ExitCode demo(const RunRequest& request) {
   std::printf("\nreplaying the first 2 seconds of the recording, as its own writers on DDS\n");
   const ExitCode replay_code = runProgram(siblingProgram("baton-replayer"),
                                           {recording, "--to", "2", "--domain", std::to_string(request.domain)});
-  std::printf(
-      "\nnext, try\n"
-      "  deploy/baton bag info %s\n"
-      "  deploy/baton up lab      then: deploy/baton controllers, deploy/baton swap tracking, deploy/baton down\n"
-      "  deploy/baton model --robot rpp --q pi/3 0.1 0.1\n",
-      recording.c_str());
+  const char* baton = isInstalled() ? "baton" : "deploy/baton";
+  std::fputs(fmt::format("\nnext, try\n"
+                         "  {0} bag info {1}\n"
+                         "  {0} up lab      then: {0} controllers, {0} swap tracking, {0} down\n"
+                         "  {0} model --robot rpp --q pi/3 0.1 0.1\n",
+                         baton, recording)
+                 .c_str(),
+             stdout);
   return replay_code;
 }
 

@@ -27,7 +27,7 @@ void runGnuplot(const fs::path& folder, const std::string& argument) {
   int how = 0;
   if (pid < 0 || waitpid(pid, &how, 0) != pid) throw UnavailableError("cannot start gnuplot");
   if (WIFEXITED(how) && WEXITSTATUS(how) == 127) {
-    throw UnavailableError("gnuplot is missing: deploy/setup installs it (Debian: gnuplot-nox)");
+    throw UnavailableError("gnuplot is missing: install it (Debian: gnuplot-nox)");
   }
   if (!WIFEXITED(how) || WEXITSTATUS(how) != 0) {
     throw UnavailableError("gnuplot failed on " + (folder / argument).string() + ": run it by hand to see why");

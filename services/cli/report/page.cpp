@@ -146,7 +146,7 @@ void writeFigure(std::ofstream& page, const FigureResult& result) {
                                                : "Something could not be run, measured or drawn.");
   std::string runs;
   for (std::size_t i = 0; i < figure.runs.size(); ++i) {
-    runs += fmt::format("{}<code>deploy/baton run {}/{}</code>", runs.empty() ? "" : "<br>", escaped(figure.folder),
+    runs += fmt::format("{}<code>baton run {}/{}</code>", runs.empty() ? "" : "<br>", escaped(figure.folder),
                         escaped(figure.runs[i].scenario));
     if (i < result.settings.size()) runs += fmt::format(" <small>{}</small>", escaped(result.settings[i]));
   }
