@@ -1,5 +1,5 @@
-/// Fast DDS 2.9 (Debian 12) and Fast DDS 3 (Debian 13) under one set of names, those of the later one where they differ.
-/// This header is the only place that knows which of them it is. For common/dds, its tests and the yardstick of
+/// Fast DDS 2.9 (Debian 12) and Fast DDS 3 (Debian 13) under one set of names, those of the later one where they
+/// differ. This header is the only place that knows which of them it is. For common/dds, its tests and the yardstick of
 /// tests/bench/loop.
 #pragma once
 
@@ -170,7 +170,7 @@ class DiscoveryListener : public dds::DomainParticipantListener {
     if (reason != Status::DISCOVERED_PARTICIPANT && reason != Status::CHANGED_QOS_PARTICIPANT) {
       onParticipantGone(info.guid);
     } else {
-      onParticipant({info.guid, {info.user_data.begin(), info.user_data.end()}});
+      onParticipant({info.guid, { info.user_data.begin(), info.user_data.end() }});
     }
   }
   void on_data_writer_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryStatus reason,
