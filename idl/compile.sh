@@ -38,7 +38,7 @@ unscope_enums() {
   expect "enums" "$(count '^enum [A-Za-z]* : int32_t$' "$1")" "$(count '^ *enum ' "$idl")"
 }
 
-# Code of fastddsgen 4 takes a message for whole whose payload ends behind any of its members.
+# Code of fastddsgen 4 accepts a payload that ends after any member of its message.
 read_every_member() {
   sed -i 's/cdr\.deserialize_type(/baton::msg::readEveryMember(cdr, /' "$1"
   sed -i '1i #include "msg/cdr.hpp"' "$1"
@@ -72,7 +72,7 @@ case $tool in
     log=$(fastddsgen -cs -replace -t "$scratch" -I "$include" -d "$types" "$idl" 2>&1) || { printf '%s\n' "$log" >&2; exit 1; }
     name=$(basename "$idl" .idl)
     # fastddsgen 2.3 does not know @unit and says so each time; the annotation is for the tools that read recordings.
-    # fastddsgen 4 ends with success behind some exceptions.
+    # fastddsgen 4 exits with 0 after some exceptions.
     problems=$(printf '%s\n' "$log" | grep -iE 'warning|error|exception' | grep -v 'Annotation unit not supported' || true)
     if [ -n "$problems" ]; then
       :

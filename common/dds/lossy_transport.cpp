@@ -12,7 +12,7 @@ using fastdds::Datagram;
 namespace rtps = fastdds::rtps;
 namespace transport = fastdds::transport;
 
-/// Scatters the losses over the datagrams of this process; the count goes on whatever is sent again.
+/// Scatters the losses over the datagrams of this process. A datagram that is sent again counts as a new one.
 bool isLost(std::uint64_t one_in) {
   static std::atomic<std::uint64_t> count{0};
   return splitmix(++count * kSplitmixStep) % one_in == 0;

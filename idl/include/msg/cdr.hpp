@@ -37,8 +37,8 @@ template <class T>
   return max_cdr_size<T>;
 }
 
-/// Reads a message member by member. Stands for Cdr::deserialize_type() in generated code (compile.sh), which takes a
-/// payload that ends behind any member for a whole one: the other members would keep what the message held before.
+/// Reads a message member by member. Stands for Cdr::deserialize_type() in generated code (compile.sh), which accepts
+/// a payload that ends after any member: the other members would keep what the message held before.
 template <class ReadMember>
 void readEveryMember(eprosima::fastcdr::Cdr& cdr, eprosima::fastcdr::EncodingAlgorithmFlag, ReadMember read_member) {
   eprosima::fastcdr::MemberId member(0);
