@@ -219,6 +219,8 @@ void Writer::writeChunk() {
     emit(records);
   }
   index.chunk_length = file_.size() - index.chunk_offset;
+  // A reader finds them from here on, even when the disk ends within what follows.
+  written_messages_ += std::exchange(chunk_messages_, 0);
 
   scratch_.clear();
   index.message_index_offsets.reserve(chunk_channels_.size());
@@ -234,7 +236,6 @@ void Writer::writeChunk() {
   start_time_ns_ = chunk_indexes_.empty() ? chunk.start_time_ns : std::min(start_time_ns_, chunk.start_time_ns);
   end_time_ns_ = std::max(end_time_ns_, chunk.end_time_ns);
   chunk_indexes_.push_back(std::move(index));
-  written_messages_ += std::exchange(chunk_messages_, 0);
   chunk_channels_.clear();
   if (options_.sync_chunks) file_.sync();
 }

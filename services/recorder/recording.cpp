@@ -118,8 +118,14 @@ void Recording::splitWhenFull(std::uint64_t elapsed, std::uint64_t step) {
   if (!isPartFull(config_, so_far.chunks > 0 ? so_far.file_bytes : 0, elapsed - part_elapsed_)) return;
   // The next one first: without it this one goes on.
   std::unique_ptr<mcap::Writer> next = openPart(index_ + 1, step);
-  file_->addMetadata("baton.part_end", {{"next", partOf(path_, index_ + 1).filename().string()}});
-  closeFile();
+  try {
+    file_->addMetadata("baton.part_end", {{"next", partOf(path_, index_ + 1).filename().string()}});
+    closeFile();
+  } catch (const mcap::WriteError&) {
+    // There was room for the beginning of the next one, and none for the end of this one: this one is the last.
+    next->discard();
+    throw;
+  }
   file_ = std::move(next);
   ++index_;
   parts_.push_back({.path = partOf(path_, index_), .from_step = step, .messages_before = messages_, .shares = {}});

@@ -15,6 +15,7 @@
 #include "runtime/recording_parts.hpp"
 #include "runtime/yaml.hpp"
 #include "support/allocation_guard.hpp"
+#include "support/file_size_limit.hpp"
 #include "support/short_contact.hpp"
 
 namespace baton {
@@ -253,6 +254,20 @@ TEST_F(RecordingTest, WhereTheOldestPartsHaveGoneTheAccountIsOfTheRest) {
   std::uint64_t held = 0;
   for (const Json& row : certificate.at("streams")) held += row.at("count").get<std::uint64_t>();
   EXPECT_EQ(certificate.at("holes").at(0).at("samples").get<std::uint64_t>() + held, 902u);
+}
+
+TEST_F(RecordingTest, APartThatCannotBeClosedIsTheLast) {
+  open(", split_MB: 0.02");
+  while (recording_->storage().part_bytes < 20'000) write(0);
+  recording_->flush();
+  {
+    // There is room for the beginning of the next part, and none for the summary of this one.
+    const test::FileSizeLimit limit(recording_->storage().part_bytes + 10);
+    EXPECT_THROW(recording_->splitWhenFull(1, 1), mcap::WriteError);
+  }
+  recording_.reset();
+  EXPECT_EQ(parts(), std::vector<fs::path>{file()});
+  EXPECT_FALSE(mcap::Reader(file()).info().is_complete);
 }
 
 TEST_F(RecordingTest, TheNextPartIsNotMadeOfWhatLiesThereAlready) {

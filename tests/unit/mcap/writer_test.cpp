@@ -4,6 +4,7 @@
 #include <map>
 
 #include "recording.hpp"
+#include "support/file_size_limit.hpp"
 
 namespace baton::mcap {
 namespace {
@@ -331,6 +332,31 @@ TEST_P(PlainWriterTest, FlushMakesEverythingReadableByOthers) {
   EXPECT_FALSE(reader.info().is_complete);
   EXPECT_EQ(logTimesOf(reader), std::vector<std::uint64_t>{1});
   EXPECT_EQ(reader.metadata().size(), 1U);
+}
+
+// Wherever a disk ends: within a chunk, between it and its index, within the index, within the summary.
+TEST_P(PlainWriterTest, CountsAsWrittenWhatAReaderFindsWhereverTheDiskEnds) {
+  const auto write = [&](const std::filesystem::path& file, rlim_t room) {
+    Writer writer(file, options(400));
+    const test::FileSizeLimit limit(room);
+    try {
+      const ChannelId channel = writer.addChannel("topic", "cdr", writer.addSchema("Type", "", {}), {});
+      for (std::uint32_t i = 0; i < 12; ++i) writer.write(channel, i, i, i, payload(90, i));
+      writer.close();
+    } catch (const WriteError&) {
+    }
+    return writer.statistics().written_messages;
+  };
+  const std::filesystem::path all = folder.file("all");
+  ASSERT_EQ(write(all, RLIM_INFINITY), 12U);
+  const auto size = std::filesystem::file_size(all);
+  for (rlim_t room = 200; room < size; room += 3) {
+    SCOPED_TRACE(room);
+    const std::filesystem::path cut = folder.file("cut" + std::to_string(room));
+    const std::uint64_t written = write(cut, room);
+    EXPECT_EQ(Reader(cut).statistics().message_count, written);
+    std::filesystem::remove(cut);
+  }
 }
 
 TEST_P(PlainWriterTest, CountsAsDurableOnlyWhatWasSynced) {
