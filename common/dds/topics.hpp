@@ -2,6 +2,8 @@
 /// none.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "dds/types.hpp"
@@ -16,58 +18,77 @@
 
 namespace baton::dds {
 
-/// Topics of which a writer's latest word is all that counts are called so; of the others every sample matters.
+/// A topic whose name ends so carries states: only a writer's latest sample counts. Of the others every sample matters.
 [[nodiscard]] constexpr bool isStatusTopic(std::string_view name) { return name.ends_with("_status"); }
 
-template <class T>
-struct Topic {
-  consteval Topic(const char* name_in, const char* type_in, Profile profile_in)
-      : name(name_in), type(type_in), profile(profile_in) {
-    if (isStatusTopic(name) != (profile == Profile::kStatus)) throw "a topic's name and its profile disagree";
-  }
+/// Whose samples a recording must have from the first one on, or it is not complete. A run begins when the recorder
+/// reads them. Samples of other writers are recorded from when the writer is discovered.
+enum class RecordedFrom { kNobody, kPlant, kTrajectory, kEnvironment, kControllers, kServices };
+
+struct TopicFacts {
   const char* name;
   const char* type;
   Profile profile;
+  RecordedFrom recorded_from;
 };
 
-namespace topics {
+/// The facts of a topic whose samples are of type T.
+template <class T>
+struct Topic : TopicFacts {};
+
+// TOPIC(constant, name, type, profile, recorded from the first sample on)
 // clang-format off
-inline constexpr Topic<msg::PlantState>       kPlantState      {"plant_state",       "baton::msg::PlantState",       Profile::kLoop};
-inline constexpr Topic<msg::PlantState>       kPlantStateAgain {"plant_state_again", "baton::msg::PlantState",       Profile::kLoop};
-inline constexpr Topic<msg::Contact>          kContact         {"contact",           "baton::msg::Contact",          Profile::kLoop};
-inline constexpr Topic<msg::Reference>        kReference       {"reference",         "baton::msg::Reference",        Profile::kLoop};
-inline constexpr Topic<msg::JointCommand>     kJointCommand    {"joint_command",     "baton::msg::JointCommand",     Profile::kLoop};
-inline constexpr Topic<msg::JointCommand>     kShadowCommand   {"shadow_command",    "baton::msg::JointCommand",     Profile::kLoop};
-inline constexpr Topic<msg::Checkpoint>       kCheckpoint      {"checkpoint",        "baton::msg::Checkpoint",       Profile::kLoop};
-inline constexpr Topic<msg::SimRequest>       kSimRequest      {"sim_request",       "baton::msg::SimRequest",       Profile::kRequest};
-inline constexpr Topic<msg::SimReply>         kSimReply        {"sim_reply",         "baton::msg::SimReply",         Profile::kRequest};
-inline constexpr Topic<msg::SimStatus>        kSimStatus       {"sim_status",        "baton::msg::SimStatus",        Profile::kStatus};
-inline constexpr Topic<msg::Rewind>           kRewind          {"rewind",            "baton::msg::Rewind",           Profile::kLoop};
-inline constexpr Topic<msg::RewindAck>        kRewindAck       {"rewind_ack",        "baton::msg::RewindAck",        Profile::kLoop};
-inline constexpr Topic<msg::TimingStatus>     kTimingStatus    {"timing_status",     "baton::msg::TimingStatus",     Profile::kStatus};
-inline constexpr Topic<msg::SwapRequest>      kSwapRequest     {"swap_request",      "baton::msg::SwapRequest",      Profile::kRequest};
-inline constexpr Topic<msg::SwapPlan>         kSwapPlan        {"swap_plan",         "baton::msg::SwapPlan",         Profile::kEvent};
-inline constexpr Topic<msg::SwapAck>          kSwapAck         {"swap_ack",          "baton::msg::SwapAck",          Profile::kEvent};
-inline constexpr Topic<msg::SwapOutcome>      kSwapOutcome     {"swap_outcome",      "baton::msg::SwapOutcome",      Profile::kEvent};
-inline constexpr Topic<msg::SwapReport>       kSwapReport      {"swap_report",       "baton::msg::SwapReport",       Profile::kEvent};
-inline constexpr Topic<msg::BatonStatus>      kBatonStatus     {"baton_status",      "baton::msg::BatonStatus",      Profile::kStatus};
-inline constexpr Topic<msg::ControllerStatus> kControllerStatus{"controller_status", "baton::msg::ControllerStatus", Profile::kStatus};
-inline constexpr Topic<msg::ParameterStatus>  kParameterStatus {"parameter_status",  "baton::msg::ParameterStatus",  Profile::kStatus};
-inline constexpr Topic<msg::ParameterRequest> kParameterRequest{"parameter_request", "baton::msg::ParameterRequest", Profile::kRequest};
-inline constexpr Topic<msg::ParameterReply>   kParameterReply  {"parameter_reply",   "baton::msg::ParameterReply",   Profile::kEvent};
-inline constexpr Topic<msg::Decision>         kDecision        {"decision",          "baton::msg::Decision",         Profile::kEvent};
-inline constexpr Topic<msg::LaunchRequest>    kLaunchRequest   {"launch_request",    "baton::msg::LaunchRequest",    Profile::kRequest};
-inline constexpr Topic<msg::LaunchReply>      kLaunchReply     {"launch_reply",      "baton::msg::LaunchReply",      Profile::kEvent};
-inline constexpr Topic<msg::ServiceStatus>    kServiceStatus   {"service_status",    "baton::msg::ServiceStatus",    Profile::kStatus};
-inline constexpr Topic<msg::ServiceManifest>  kServiceManifest {"service_manifest",  "baton::msg::ServiceManifest",  Profile::kEvent};
-inline constexpr Topic<msg::Event>            kEvent           {"event",             "baton::msg::Event",            Profile::kEvent};
-inline constexpr Topic<msg::RecorderStatus>   kRecorderStatus  {"recorder_status",   "baton::msg::RecorderStatus",   Profile::kStatus};
-inline constexpr Topic<msg::RecordRequest>    kRecordRequest   {"record_request",    "baton::msg::RecordRequest",    Profile::kRequest};
-inline constexpr Topic<msg::RecordReply>      kRecordReply     {"record_reply",      "baton::msg::RecordReply",      Profile::kRequest};
-inline constexpr Topic<msg::ReplayStatus>     kReplayStatus    {"replay_status",     "baton::msg::ReplayStatus",     Profile::kStatus};
-inline constexpr Topic<msg::ReplayRequest>    kReplayRequest   {"replay_request",    "baton::msg::ReplayRequest",    Profile::kRequest};
-inline constexpr Topic<msg::ReplayReply>      kReplayReply     {"replay_reply",      "baton::msg::ReplayReply",      Profile::kRequest};
+#define BATON_TOPICS(TOPIC) \
+  TOPIC(kPlantState,       "plant_state",        PlantState,       kLoop,    kPlant)       \
+  TOPIC(kPlantStateAgain,  "plant_state_again",  PlantState,       kLoop,    kNobody)      \
+  TOPIC(kContact,          "contact",            Contact,          kLoop,    kEnvironment) \
+  TOPIC(kReference,        "reference",          Reference,        kLoop,    kTrajectory)  \
+  TOPIC(kJointCommand,     "joint_command",      JointCommand,     kLoop,    kControllers) \
+  TOPIC(kShadowCommand,    "shadow_command",     JointCommand,     kLoop,    kControllers) \
+  TOPIC(kCheckpoint,       "checkpoint",         Checkpoint,       kLoop,    kPlant)       \
+  TOPIC(kSimRequest,       "sim_request",        SimRequest,       kRequest, kNobody)      \
+  TOPIC(kSimReply,         "sim_reply",          SimReply,         kRequest, kNobody)      \
+  TOPIC(kSimStatus,        "sim_status",         SimStatus,        kStatus,  kNobody)      \
+  TOPIC(kRewind,           "rewind",             Rewind,           kLoop,    kPlant)       \
+  TOPIC(kRewindAck,        "rewind_ack",         RewindAck,        kLoop,    kNobody)      \
+  TOPIC(kTimingStatus,     "timing_status",      TimingStatus,     kStatus,  kNobody)      \
+  TOPIC(kSwapRequest,      "swap_request",       SwapRequest,      kRequest, kNobody)      \
+  TOPIC(kSwapPlan,         "swap_plan",          SwapPlan,         kEvent,   kPlant)       \
+  TOPIC(kSwapAck,          "swap_ack",           SwapAck,          kEvent,   kControllers) \
+  TOPIC(kSwapOutcome,      "swap_outcome",       SwapOutcome,      kEvent,   kPlant)       \
+  TOPIC(kSwapReport,       "swap_report",        SwapReport,       kEvent,   kPlant)       \
+  TOPIC(kBatonStatus,      "baton_status",       BatonStatus,      kStatus,  kNobody)      \
+  TOPIC(kControllerStatus, "controller_status",  ControllerStatus, kStatus,  kNobody)      \
+  TOPIC(kParameterStatus,  "parameter_status",   ParameterStatus,  kStatus,  kNobody)      \
+  TOPIC(kParameterRequest, "parameter_request",  ParameterRequest, kRequest, kNobody)      \
+  TOPIC(kParameterReply,   "parameter_reply",    ParameterReply,   kEvent,   kNobody)      \
+  TOPIC(kDecision,         "decision",           Decision,         kEvent,   kPlant)       \
+  TOPIC(kLaunchRequest,    "launch_request",     LaunchRequest,    kRequest, kNobody)      \
+  TOPIC(kLaunchReply,      "launch_reply",       LaunchReply,      kEvent,   kNobody)      \
+  TOPIC(kServiceStatus,    "service_status",     ServiceStatus,    kStatus,  kNobody)      \
+  TOPIC(kServiceManifest,  "service_manifest",   ServiceManifest,  kEvent,   kServices)    \
+  TOPIC(kEvent,            "event",              Event,            kEvent,   kServices)    \
+  TOPIC(kRecorderStatus,   "recorder_status",    RecorderStatus,   kStatus,  kNobody)      \
+  TOPIC(kRecordRequest,    "record_request",     RecordRequest,    kRequest, kNobody)      \
+  TOPIC(kRecordReply,      "record_reply",       RecordReply,      kRequest, kNobody)      \
+  TOPIC(kReplayStatus,     "replay_status",      ReplayStatus,     kStatus,  kNobody)      \
+  TOPIC(kReplayRequest,    "replay_request",     ReplayRequest,    kRequest, kNobody)      \
+  TOPIC(kReplayReply,      "replay_reply",       ReplayReply,      kRequest, kNobody)
 // clang-format on
+
+namespace topics {
+#define BATON_TOPIC_CONSTANT(constant, name, type, profile, from) \
+  inline constexpr Topic<msg::type> constant{{name, "baton::msg::" #type, Profile::profile, RecordedFrom::from}};
+BATON_TOPICS(BATON_TOPIC_CONSTANT)
+#undef BATON_TOPIC_CONSTANT
+
+#define BATON_TOPIC_FACTS(constant, name, type, profile, from) static_cast<const TopicFacts&>(constant),
+inline constexpr std::array kAll{BATON_TOPICS(BATON_TOPIC_FACTS)};
+#undef BATON_TOPIC_FACTS
+static_assert(std::ranges::all_of(kAll, [](const TopicFacts& topic) {
+  return isStatusTopic(topic.name) == (topic.profile == Profile::kStatus);
+}));
 }  // namespace topics
+#undef BATON_TOPICS
 
 }  // namespace baton::dds

@@ -37,9 +37,7 @@ void TopicReaders::watch() {
 
 void TopicReaders::requireServices() {
   const Scenario& scenario = service_.scenario();
-  const std::vector<std::string> controllers = controllerNames(scenario);
-  const auto require = [this](const auto& topic, const std::vector<std::string>& writers) {
-    const std::string name = topic.name;
+  const auto require = [this](const std::string& name, const std::vector<std::string>& writers) {
     awaited_.insert(name);
     service_.require(
         name,
@@ -53,21 +51,19 @@ void TopicReaders::requireServices() {
         },
         writers);
   };
-  require(dds::topics::kPlantState, {kPlantName});
-  require(dds::topics::kRewind, {kPlantName});
-  require(dds::topics::kSwapPlan, {kPlantName});
-  require(dds::topics::kSwapOutcome, {kPlantName});
-  require(dds::topics::kSwapReport, {kPlantName});
-  require(dds::topics::kDecision, {kPlantName});
-  require(dds::topics::kReference, {kTrajectoryName});
-  if (scenario.hasEnvironment()) require(dds::topics::kContact, {kEnvironmentName});
-  require(dds::topics::kJointCommand, controllers);
-  require(dds::topics::kShadowCommand, controllers);
-  require(dds::topics::kSwapAck, controllers);
-  require(dds::topics::kCheckpoint, {kPlantName});  // controllers that have checkpoints wait for us themselves
-  require(dds::topics::kEvent, servicesBut(kRecorderName, scenario));
-  require(dds::topics::kServiceManifest, servicesBut(kRecorderName, scenario));
-  // Of these nobody waits for us, but they tell what the recorder has to know.
+  for (const dds::TopicFacts& topic : dds::topics::kAll) {
+    switch (topic.recorded_from) {
+      case dds::RecordedFrom::kNobody: break;
+      case dds::RecordedFrom::kPlant: require(topic.name, {kPlantName}); break;
+      case dds::RecordedFrom::kTrajectory: require(topic.name, {kTrajectoryName}); break;
+      case dds::RecordedFrom::kEnvironment:
+        if (scenario.hasEnvironment()) require(topic.name, {kEnvironmentName});
+        break;
+      case dds::RecordedFrom::kControllers: require(topic.name, controllerNames(scenario)); break;
+      case dds::RecordedFrom::kServices: require(topic.name, servicesBut(kRecorderName, scenario)); break;
+    }
+  }
+  // No writer waits for the recorder to read these; the recorder itself needs what they say.
   for (const char* name :
        {dds::topics::kServiceStatus.name, dds::topics::kParameterStatus.name, dds::topics::kParameterReply.name}) {
     awaited_.insert(name);

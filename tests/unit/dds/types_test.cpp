@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <random>
@@ -101,34 +102,56 @@ TEST(Guids, ThePrefixIsTheParticipant) {
   EXPECT_NE(prefixOf(stranger), prefix);
 }
 
-struct Row {
-  std::string name;
-  std::string type;
-};
-
-std::vector<Row> topicTable() {
-  std::vector<Row> rows;
-  const auto list = [&](const auto&... topics) { (rows.push_back({topics.name, topics.type}), ...); };
-  list(topics::kPlantState, topics::kContact, topics::kReference, topics::kJointCommand, topics::kShadowCommand,
-       topics::kCheckpoint, topics::kSimRequest, topics::kSimReply, topics::kSimStatus, topics::kTimingStatus,
-       topics::kRewind, topics::kRewindAck, topics::kSwapRequest, topics::kSwapPlan, topics::kSwapAck,
-       topics::kSwapOutcome, topics::kSwapReport, topics::kBatonStatus, topics::kControllerStatus,
-       topics::kParameterStatus, topics::kParameterRequest, topics::kParameterReply, topics::kDecision,
-       topics::kLaunchRequest, topics::kLaunchReply, topics::kServiceStatus, topics::kServiceManifest, topics::kEvent,
-       topics::kRecorderStatus, topics::kRecordRequest, topics::kRecordReply, topics::kReplayStatus,
-       topics::kReplayRequest, topics::kReplayReply);
-  return rows;
-}
-
 TEST(TopicTable, EveryNameIsUsedOnce) {
   std::set<std::string> names;
-  for (const Row& row : topicTable()) EXPECT_TRUE(names.insert(row.name).second) << row.name;
+  for (const TopicFacts& topic : topics::kAll) EXPECT_TRUE(names.insert(topic.name).second) << topic.name;
 }
 
 TEST(TopicTable, EveryTypeIsInTheIdl) {
   std::set<std::string, std::less<>> types;
   for (const msg::IdlText& entry : msg::allIdlTexts()) types.insert(std::string(entry.type_name));
-  for (const Row& row : topicTable()) EXPECT_TRUE(types.contains(row.type)) << row.name << " has type " << row.type;
+  for (const TopicFacts& topic : topics::kAll)
+    EXPECT_TRUE(types.contains(topic.type)) << topic.name << ": " << topic.type;
+}
+
+/// What a row of the table in idl/README.md says of a topic. Its columns: topic, type, writer, readers, QoS, units.
+using DocumentedTopics = std::map<std::string, std::vector<std::string>>;
+
+DocumentedTopics documentedTopics() {
+  DocumentedTopics rows;
+  std::ifstream readme(BATON_TEST_IDL_README);
+  EXPECT_TRUE(readme) << "cannot read " << BATON_TEST_IDL_README;
+  for (std::string line; std::getline(readme, line);) {
+    const std::regex row(R"(^\| `(\w+)` \| `(\w+)` \| (.*?) \| (.*?) \| (\w+) \|.*$)");
+    if (std::smatch cells; std::regex_match(line, cells, row))
+      rows[cells[1]] = {cells[2], cells[3], cells[4], cells[5]};
+  }
+  return rows;
+}
+
+TEST(TopicTable, IsTheOneThatTheReadmeShows) {
+  const std::map<Profile, std::string> profiles{{Profile::kLoop, "loop"},
+                                                {Profile::kEvent, "event"},
+                                                {Profile::kStatus, "status"},
+                                                {Profile::kRequest, "request"}};
+  const std::map<RecordedFrom, std::string> writers{{RecordedFrom::kPlant, "plant"},
+                                                    {RecordedFrom::kTrajectory, "trajectory"},
+                                                    {RecordedFrom::kEnvironment, "environment"},
+                                                    {RecordedFrom::kControllers, "controller"},
+                                                    {RecordedFrom::kServices, "every service"}};
+  DocumentedTopics rows = documentedTopics();
+  for (const TopicFacts& topic : topics::kAll) {
+    ASSERT_TRUE(rows.contains(topic.name)) << "idl/README.md has no row for " << topic.name;
+    const std::vector<std::string>& row = rows[topic.name];
+    EXPECT_EQ("baton::msg::" + row[0], topic.type) << topic.name;
+    EXPECT_EQ(row[3], profiles.at(topic.profile)) << topic.name;
+    if (topic.recorded_from != RecordedFrom::kNobody) {
+      EXPECT_NE(row[1].find(writers.at(topic.recorded_from)), std::string::npos)
+          << topic.name << ", writer: " << row[1];
+    }
+    rows.erase(topic.name);
+  }
+  for (const auto& [name, row] : rows) ADD_FAILURE() << "idl/README.md has a row for " << name << ", which is no topic";
 }
 
 TEST(IdlTexts, EveryTypeIsListedOnceAndDefinedInItsText) {
