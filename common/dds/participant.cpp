@@ -13,7 +13,6 @@
 #include "dds/lossy_transport.hpp"
 #include "dds/participant_impl.hpp"
 #include "dds/raw_type.hpp"
-#include "dds/thread_id.hpp"
 
 namespace baton::dds {
 namespace {
@@ -142,7 +141,6 @@ Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_
   if (options.domain < 0 || options.domain > kMaxDomain) {
     throw UsageError("DDS domain: expected 0 to 232, found " + std::to_string(options.domain));
   }
-  rememberThreadIds();
   const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
   self = {.cell = options.cell,
           .run = options.run,

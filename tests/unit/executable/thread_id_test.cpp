@@ -1,5 +1,4 @@
-#include "dds/thread_id.hpp"
-
+// The `syscall` of common/executable, which this program is linked with.
 #include <gtest/gtest.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -8,11 +7,10 @@
 #include <cerrno>
 #include <thread>
 
-namespace baton::dds {
+namespace baton {
 namespace {
 
 TEST(ThreadId, IsTheKernelsInEveryThread) {
-  rememberThreadIds();
   for (int again = 0; again < 3; ++again) EXPECT_EQ(syscall(SYS_gettid), gettid());
   std::thread([] {
     for (int again = 0; again < 3; ++again) EXPECT_EQ(syscall(SYS_gettid), gettid());
@@ -20,7 +18,6 @@ TEST(ThreadId, IsTheKernelsInEveryThread) {
 }
 
 TEST(ThreadId, OfAForkedChildIsItsOwn) {
-  rememberThreadIds();
   ASSERT_EQ(syscall(SYS_gettid), gettid());
   const pid_t child = fork();
   if (child == 0) _exit(syscall(SYS_gettid) == getpid() ? 0 : 1);
@@ -37,4 +34,4 @@ TEST(ThreadId, OtherSystemCallsPassWithTheirErrors) {
 }
 
 }  // namespace
-}  // namespace baton::dds
+}  // namespace baton

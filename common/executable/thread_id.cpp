@@ -1,9 +1,7 @@
-// Debian builds Fast DDS 2.9.1 with its assertions on, and some of them ask the kernel for the id of the calling
-// thread: eleven system calls for each sample that a reliable reader takes, a third of all the time a step of the loop
-// takes. A thread's id never changes, so this process asks once. The executable's `syscall` comes before the C
-// library's.
-#include "dds/thread_id.hpp"
-
+// Debian builds Fast DDS 2.9.1 and 3.1.2 with their assertions on. Some of these ask the kernel for the id of the
+// calling thread: eleven system calls for each sample that a reliable reader takes, a third of the time of a step. A
+// thread's id never changes, so a process with this `syscall` asks once per thread. The dynamic linker finds the
+// executable's `syscall` before the C library's; a library must not carry it.
 #include <dlfcn.h>
 #include <pthread.h>
 #include <sys/syscall.h>
@@ -28,6 +26,9 @@ Syscall next() noexcept {
   return function;
 }
 
+// A child of fork() is another thread with the same memory.
+[[maybe_unused]] const int registered = pthread_atfork(nullptr, nullptr, [] { own_id = 0; });
+
 }  // namespace
 
 // NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): the header has a reserved one
@@ -42,13 +43,3 @@ extern "C" long syscall(long number, ...) noexcept {
   if (number == SYS_gettid) own_id = result;
   return result;
 }
-
-namespace baton::dds {
-
-void rememberThreadIds() noexcept {
-  // A child of fork() is another thread with the same memory.
-  static const int registered = pthread_atfork(nullptr, nullptr, [] { own_id = 0; });
-  (void)registered;
-}
-
-}  // namespace baton::dds
