@@ -9,7 +9,12 @@
 /// What IEEE 754 rounds correctly (sqrt, floor, remainder, copysign, fabs) may come from <cmath>.
 #pragma once
 
+#include <string>
+
 namespace baton::elementary {
+
+/// The library that computes them here, as in "SLEEF 3.6.1".
+[[nodiscard]] std::string library();
 
 struct SinCos {
   double sine;

@@ -58,6 +58,12 @@ namespace rtps = eprosima::fastrtps::rtps;
 namespace core = eprosima::fastrtps;
 #endif
 
+#if BATON_FASTDDS == 3
+inline constexpr const char* kVersion = FASTDDS_VERSION_STR;
+#else
+inline constexpr const char* kVersion = FASTRTPS_VERSION_STR;
+#endif
+
 using core::Duration_t;
 inline constexpr std::int32_t kInfiniteSeconds = core::Time_t::INFINITE_SECONDS;
 inline const Duration_t kForever{kInfiniteSeconds, core::Time_t::INFINITE_NANOSECONDS};

@@ -275,6 +275,8 @@ void Participant::watchWriters(WriterCallback callback) {
   for (const auto& [guid, writer] : known) impl_->on_writer(writer);
 }
 
+std::string productName() { return std::string("Fast DDS ") + fastdds::kVersion; }
+
 void redirectDdsLog(std::function<void(int level, const std::string& text)> sink) {
   struct Consumer final : LogConsumer {
     explicit Consumer(std::function<void(int, const std::string&)> s) : sink(std::move(s)) {}

@@ -81,6 +81,9 @@ class Participant {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The DDS product and its version, as in "Fast DDS 2.9.1".
+[[nodiscard]] std::string productName();
+
 /// Sends what the DDS product logs to `sink` (level 0 error, 1 warning) instead of standard output.
 void redirectDdsLog(std::function<void(int level, const std::string& text)> sink);
 

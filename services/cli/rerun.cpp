@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "report/recording.hpp"
+
 namespace baton {
 namespace {
 
@@ -17,11 +19,13 @@ std::uint64_t endOf(const RecordedRun& run) {
 }  // namespace
 
 std::string Rerun::text() const {
+  std::string differs = "differs: ";
+  for (const MadeWithDifference& one : made_with) differs += toText(one) + "; ";
   if (const auto& parting = comparison.parting) {
-    return fmt::format("differs: first at step {} in {}", parting->step, parting->topic);
+    return differs + fmt::format("first at step {} in {}", parting->step, parting->topic);
   }
   if (first_missing) {
-    return fmt::format("differs: ends before step {}: {}", *first_missing, result.at("reason").get<std::string>());
+    return differs + fmt::format("ends before step {}: {}", *first_missing, result.at("reason").get<std::string>());
   }
   return fmt::format("identical: {} steps, {} decision{} taken from the recording, hash {}", steps, decisions,
                      decisions == 1 ? "" : "s", hash);
@@ -50,6 +54,7 @@ Rerun rerun(const std::filesystem::path& recording, const std::filesystem::path&
   }
   const HashedRun then = hashRun(recording), now = hashRun(made.recording);
   made.comparison = compare(then, now);
+  made.made_with = madeWithDifferences(runManifest(mcap::Reader(recording)), runManifest(mcap::Reader(made.recording)));
   made.steps = then.steps.size();
   made.decisions = original.decisions.size();
   made.hash = then.hash();

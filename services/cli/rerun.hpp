@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bag/run_hash.hpp"
+#include "made_with.hpp"
 #include "recorded_run.hpp"
 #include "run_session.hpp"
 
@@ -20,9 +21,10 @@ struct Rerun {
   std::uint64_t hash = 0;                      // of the recording
   nlohmann::ordered_json result;               // of the repetition, as in its result.json
   std::filesystem::path recording;             // the repetition
+  std::vector<MadeWithDifference> made_with;   // what the two were not made with alike
 
   [[nodiscard]] bool isIdentical() const { return !comparison.parting && !first_missing; }
-  /// The verdict as a sentence.
+  /// The verdict as a sentence. Where the bytes differ, what the two runs were made with comes first.
   [[nodiscard]] std::string text() const;
 };
 

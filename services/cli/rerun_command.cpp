@@ -31,6 +31,10 @@ nlohmann::ordered_json toJson(const Rerun& made, const std::string& recording) {
   } else if (made.first_missing) {
     json["first_missing_step"] = *made.first_missing;
   }
+  json["made_with"] = nlohmann::ordered_json::object();
+  for (const MadeWithDifference& one : made.made_with) {
+    json["made_with"][one.key] = {{"recording", one.then}, {"now", one.now}};
+  }
   json["rerun"] = made.result;
   return json;
 }
@@ -63,7 +67,7 @@ void addRerunCommand(CLI::App& app, ExitCode& exit_code) {
       "Everything that was decided while the run went on is in the recording: handovers and parameters that operators\n"
       "asked for, controllers that were lost and came back, where it was stopped. These are repeated at their steps,\n"
       "with processes that live and without timers, and every payload of the loop is compared.\n"
-      "Exit codes: 0 identical, 1 not, with the first step and topic.");
+      "Exit codes: 0 identical, 1 not, with what the two runs were made with, if not alike, the first step and topic.");
   command->add_option("recording", request->recording, "recording of a run in lockstep (MCAP)")->required();
   command->add_option("--out", request->run.out, "file to record to (default: kept only when it differs)");
   command->add_flag("--overwrite", request->run.overwrite, "replace the file --out names");

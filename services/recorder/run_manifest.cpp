@@ -14,6 +14,7 @@
 #include "msg/idl_text.hpp"
 #include "runtime/build_id.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/platform.hpp"
 
 namespace baton {
 namespace {
@@ -45,24 +46,26 @@ mcap::StringMap manifestOf(const ServiceOptions& options, const Scenario& scenar
   for (const msg::IdlText& text : msg::allIdlTexts()) {
     idl_hash = dds::chainHash(idl_hash, std::as_bytes(std::span(text.text)));
   }
-  return {{"version", BATON_VERSION},
-          {"compiler", BATON_COMPILER},
-          {"flags", BATON_FLAGS},
-          {"build_id", buildId()},
-          {"scenario", scenario.name},
-          {"scenario_file", scenario.file},
-          {"robot", scenario.robot.name},
-          {"cell", options.cell},
-          {"run", options.run},
-          {"domain", std::to_string(options.domain)},
-          {"checkpoint", options.checkpoint},
-          {"step_ns", std::to_string(scenario.step_ns)},
-          {"seed", seedsOf(scenario)},
-          {"idl_hash", fmt::format("{:016x}", idl_hash)},
-          {"begun", utcNow()},
-          {"host", host.nodename},
-          {"system", fmt::format("{} {} {}", host.sysname, host.release, host.machine)},
-          {"cores", std::to_string(std::thread::hardware_concurrency())}};
+  mcap::StringMap manifest = platform();
+  manifest.merge(mcap::StringMap{{"version", BATON_VERSION},
+                                 {"compiler", BATON_COMPILER},
+                                 {"flags", BATON_FLAGS},
+                                 {"build_id", buildId()},
+                                 {"scenario", scenario.name},
+                                 {"scenario_file", scenario.file},
+                                 {"robot", scenario.robot.name},
+                                 {"cell", options.cell},
+                                 {"run", options.run},
+                                 {"domain", std::to_string(options.domain)},
+                                 {"checkpoint", options.checkpoint},
+                                 {"step_ns", std::to_string(scenario.step_ns)},
+                                 {"seed", seedsOf(scenario)},
+                                 {"idl_hash", fmt::format("{:016x}", idl_hash)},
+                                 {"begun", utcNow()},
+                                 {"host", host.nodename},
+                                 {"system", fmt::format("{} {} {}", host.sysname, host.release, host.machine)},
+                                 {"cores", std::to_string(std::thread::hardware_concurrency())}});
+  return manifest;
 }
 
 }  // namespace

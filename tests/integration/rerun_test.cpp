@@ -251,8 +251,9 @@ TEST(Rerun, ABranchRepeatsWhatWasDecidedBeforeIt) {
   expectIdentical(bench, file);
 }
 
-/// The recording with one text of its scenario replaced.
-void forge(const std::string& from, const std::string& to, const std::string& what, const std::string& with) {
+/// The recording with one text of its scenario replaced, and with other values of what it was made with.
+void forge(const std::string& from, const std::string& to, const std::string& what, const std::string& with,
+           const mcap::StringMap& made_with = {}) {
   std::filesystem::remove(to);
   const mcap::Reader reader(from);
   mcap::Writer writer(to, {});
@@ -263,6 +264,12 @@ void forge(const std::string& from, const std::string& to, const std::string& wh
       text.replace(at, what.size(), with);
     }
     writer.addAttachment(index.name, "application/yaml", 0, 0, std::as_bytes(std::span(text)));
+  }
+  for (const mcap::Metadata& one : reader.metadata()) {
+    if (one.name != "baton.run") continue;
+    mcap::StringMap values = one.values;
+    for (const auto& [key, value] : made_with) values[key] = value;
+    writer.addMetadata(one.name, values);
   }
   std::map<mcap::ChannelId, mcap::ChannelId> channels;
   reader.forEachMessage({.order = mcap::MessageFilter::Order::kFile}, [&](const mcap::MessageView& view) {
@@ -286,6 +293,7 @@ TEST(Rerun, NamesTheFirstStepAndTopicThatDiffer) {
   EXPECT_FALSE(verdict.at("identical"));
   EXPECT_EQ(verdict.at("first_different_step"), kFirstSwap) << verdict;
   EXPECT_EQ(verdict.at("topic"), "joint_command");
+  EXPECT_EQ(verdict.at("made_with"), nlohmann::json::object()) << "the same programs on the same machine";
   EXPECT_EQ(bench.baton({"rerun", forged}).exit_code, 1);
   forge(file, forged, "stiffness_N_per_m: 200", "stiffness_N_per_m: 201");
   EXPECT_EQ(bench.batonJson({"rerun", forged, "--json"}).at("topic"), "contact");
@@ -293,6 +301,22 @@ TEST(Rerun, NamesTheFirstStepAndTopicThatDiffer) {
   const nlohmann::json shorter = bench.batonJson({"rerun", forged, "--json"});
   EXPECT_EQ(shorter.at("first_different_step"), 800) << "its end, where all parts save their state";
   EXPECT_EQ(shorter.at("steps_compared"), 801);
+}
+
+TEST(Rerun, NamesFirstWhatTheRecordingWasMadeWithWhereItDiffers) {
+  const Bench bench;
+  const std::string file = (bench.folder() / "run.mcap").string(), forged = (bench.folder() / "forged.mcap").string();
+  ASSERT_EQ(bench.baton({"run", bench.write("short.yaml", shortContact()), "--out", file}).exit_code, 0);
+  const std::string wall = "stiffness_N_per_m: 200";
+  forge(file, forged, wall, wall, {{"mathematics", "SLEEF 2.0.0"}});
+  EXPECT_EQ(bench.baton({"rerun", forged}).exit_code, 0) << "equal bytes are equal, whatever made them";
+  forge(file, forged, wall, "stiffness_N_per_m: 201", {{"mathematics", "SLEEF 2.0.0"}});
+  const nlohmann::json made_with = bench.batonJson({"rerun", forged, "--json"}).at("made_with");
+  ASSERT_EQ(made_with.size(), 1U) << made_with;
+  EXPECT_EQ(made_with.at("mathematics").at("recording"), "SLEEF 2.0.0");
+  const std::string said = bench.baton({"rerun", forged}).out;
+  EXPECT_EQ(said.rfind("differs: mathematics: SLEEF 2.0.0 in the recording, SLEEF ", 0), 0U) << said;
+  EXPECT_NE(said.find("; first at step"), std::string::npos) << said;
 }
 
 TEST(Rerun, RefusesWhatCannotBeRepeated) {

@@ -75,6 +75,13 @@ void expectNotLeftOut(const mcap::Reader& reader, const std::string& topic, cons
   if (!hasTopic(reader, topic) && isLeftOut(reader, topic)) missTopic(topic, file);
 }
 
+mcap::StringMap runManifest(const mcap::Reader& reader) {
+  for (const mcap::Metadata& one : reader.metadata()) {
+    if (one.name == "baton.run") return one.values;
+  }
+  return {};
+}
+
 std::string metadataValue(const mcap::Reader& reader, const std::string& record, const std::string& key) {
   for (const mcap::Metadata& one : reader.metadata()) {
     if (one.name != record) continue;

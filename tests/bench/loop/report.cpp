@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <optional>
 
 #include "bench/statistics.hpp"
+#include "runtime/platform.hpp"
 
 namespace baton::bench {
 namespace {
@@ -119,14 +119,6 @@ Json limit(const char* name, const char* unit, double value, double target) {
           {"value", orNull(value)},
           {"target", target},
           {"reached", std::isnan(value) ? Json(nullptr) : Json(value < target)}};
-}
-
-std::string processorName() {
-  std::ifstream cpuinfo("/proc/cpuinfo");
-  for (std::string line; std::getline(cpuinfo, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  }
-  return "unknown";
 }
 
 }  // namespace

@@ -1,0 +1,16 @@
+/// What a run's numbers depend on besides its programs. A recording keeps it, so that a repetition with other bytes can
+/// name the cause.
+#pragma once
+
+#include <map>
+#include <string>
+
+namespace baton {
+
+/// By key: "mathematics", "libc", "dds", "processor"; as in {"mathematics", "SLEEF 3.5.1, Eigen 3.4.0"}.
+[[nodiscard]] std::map<std::string, std::string> platform();
+
+/// The processor's own name, else its architecture.
+[[nodiscard]] std::string processorName();
+
+}  // namespace baton
