@@ -1,0 +1,45 @@
+// The scenarios that one process can run. tests/hashes/everywhere runs this with other compilers and processors.
+#include "hashes/expected.hpp"
+
+#include <set>
+
+#include "control/law.hpp"
+#include "runtime/monolithic_run.hpp"
+
+namespace baton::test {
+namespace {
+
+std::string lawOf(const Scenario& scenario) {
+  for (const ControllerConfig& controller : scenario.controllers) {
+    if (controller.name == scenario.active) return controller.law;
+  }
+  return {};
+}
+
+TEST(ExpectedHashes, AreListedForTheScenariosThereAre) {
+  std::map<std::string, std::uint64_t> expected = expectedHashes();
+  for (const Scenario& scenario : determinedScenarios()) {
+    EXPECT_EQ(expected.erase(scenario.name), 1U) << "tests/hashes/expected.txt does not list " << scenario.name;
+  }
+  for (const auto& [name, hash] : expected)
+    ADD_FAILURE() << "tests/hashes/expected.txt lists " << name << ", no scenario";
+}
+
+TEST(ExpectedHashes, AreThoseOfEveryScenarioInOneProcess) {
+  std::map<std::string, std::uint64_t> expected = expectedHashes();
+  std::set<std::string> laws;
+  for (const Scenario& scenario : determinedScenarios()) {
+    if (needsProcesses(scenario)) continue;
+    SCOPED_TRACE(scenario.name);
+    MonolithicRun run(scenario);
+    while (run.step()) {
+    }
+    EXPECT_EQ(run.failure(), "");
+    EXPECT_EQ(run.chainHash(), expected[scenario.name]);
+    laws.insert(lawOf(scenario));
+  }
+  for (const LawInfo& law : allLaws()) EXPECT_TRUE(laws.contains(law.name)) << "no scenario runs " << law.name;
+}
+
+}  // namespace
+}  // namespace baton::test
