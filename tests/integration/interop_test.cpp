@@ -87,7 +87,7 @@ TEST(Interop, FilesOfTheOfficialWriterAreRead) {
       EXPECT_GE(message.log_time_ns, latest);
       latest = message.log_time_ns;
       ASSERT_NE(message.schema, nullptr);
-      EXPECT_EQ(message.schema->name, contents.at("topics").at(message.channel->topic).at("type"));
+      EXPECT_EQ(message.schema->name, contents.at("topics").at(message.channel->topic).at("type").get<std::string>());
       EXPECT_EQ(message.channel->metadata.at("service"), "plant");
       EXPECT_TRUE(sequences[message.channel->topic].insert(message.sequence).second);
       mcap::ByteReader payload(message.data);
