@@ -149,7 +149,7 @@ std::vector<std::string> Ledger::gapsBut(const std::set<Key>& known) const {
   for (const auto& [key, stream] : streams_) dropped += stream.excused == 0 ? stream.dropped : 0;
   if (dropped > 0) result.push_back(std::to_string(dropped) + " samples came faster than they could be written");
   for (const auto& [key, stream] : streams_) {
-    const std::uint64_t missing = stream.missing - stream.excused;
+    const std::uint64_t missing = stream.missing - std::min(stream.missing, stream.excused);
     if (missing == 0 || dds::isStatusTopic(key.first) || known.contains(key) || left_out_.contains(key.first)) continue;
     result.push_back(key.first + " of " + dds::toString(key.second) + ": " + std::to_string(missing) +
                      " samples are missing");

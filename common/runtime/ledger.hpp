@@ -24,8 +24,11 @@ struct ReceivedStream {
   std::uint64_t count = 0;
   std::uint64_t missing = 0;  // holes between first and last, and what found no room
   std::uint64_t dropped = 0;  // of these, what found no room
-  std::uint64_t excused = 0;  // of the missing: lost before the file began that is judged
+  std::uint64_t excused = 0;  // of neverRecorded(): lost before the file began that is judged
   std::uint64_t stream_hash = 0;
+
+  /// What was sent up to the last sample that came, and is not recorded: what is missing, and all before the first.
+  [[nodiscard]] std::uint64_t neverRecorded() const { return missing + (first_sequence > 0 ? first_sequence - 1 : 0); }
 };
 
 class Ledger {

@@ -78,7 +78,7 @@ std::string RecordingSession::finish(const Ending& ending) {
 void RecordingSession::excuseLosses(const Recording& recording, std::uint64_t begun_at) {
   for (const auto& [key, stream] : streams_) {
     ReceivedStream& received = stream.received->second;
-    received.excused = stream.lost_at < begun_at && recording.missing(stream) == 0 ? received.missing : 0;
+    received.excused = stream.lost_at < begun_at && recording.missing(stream) == 0 ? received.neverRecorded() : 0;
   }
 }
 

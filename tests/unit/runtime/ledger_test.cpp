@@ -408,6 +408,18 @@ TEST_F(LedgerTest, WhatWasLostBeforeTheFileBeganIsExcusedAndNothingElse) {
   EXPECT_TRUE(mentions(ledger_.problems(), "20 samples sent, 15 recorded"));
 }
 
+TEST_F(LedgerTest, WhatWasSentBeforeTheFirstThatCameCanBeExcusedAsWell) {
+  transmit(state_, 20, [](std::uint64_t sequence) { return sequence > 8 && sequence != 12; });
+  Ledger::Stream& stream = ledger_.streamOf(state_.key());
+  EXPECT_EQ(ledger_.missing(), 1u) << "nobody knows yet whether 1 to 8 were for us";
+  EXPECT_EQ(stream.second.neverRecorded(), 9u);
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  ledger_.addManifest(manifestOf("environment", {}));
+  EXPECT_TRUE(mentions(ledger_.problems(), "20 samples sent, 11 recorded"));
+  stream.second.excused = stream.second.neverRecorded();
+  EXPECT_TRUE(ledger_.isComplete()) << ledger_.problems()[0];
+}
+
 TEST_F(LedgerTest, WhatFoundNoRoomBeforeTheFirstIsMissingToo) {
   ledger_.dropped(ledger_.streamOf(state_.key()), 1, 4);
   for (int i = 0; i < 4; ++i) state_.send();
