@@ -27,7 +27,7 @@ Syscall next() noexcept {
 }
 
 // A child of fork() is another thread with the same memory.
-[[maybe_unused]] const int registered = pthread_atfork(nullptr, nullptr, [] { own_id = 0; });
+[[maybe_unused]] const int kRegistered = pthread_atfork(nullptr, nullptr, [] { own_id = 0; });
 
 }  // namespace
 
