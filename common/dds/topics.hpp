@@ -1,5 +1,4 @@
-/// Every topic of Baton, one line each. A topic is one struct in idl/ and one line here; recorder and replayer need
-/// none.
+/// Every topic of Baton, one line each. A topic is one struct in idl/, one line here and one row in idl/README.md.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +21,8 @@ namespace baton::dds {
 [[nodiscard]] constexpr bool isStatusTopic(std::string_view name) { return name.ends_with("_status"); }
 
 /// Whose samples a recording must have from the first one on, or it is not complete. A run begins when the recorder
-/// reads them. Samples of other writers are recorded from when the writer is discovered.
+/// reads them. Samples of other writers are recorded from when the writer is discovered, unless the writer itself waits
+/// for the recorder, as controllers do with `checkpoint` and `decision`.
 enum class RecordedFrom { kNobody, kPlant, kTrajectory, kEnvironment, kControllers, kServices };
 
 struct TopicFacts {

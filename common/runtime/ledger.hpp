@@ -24,7 +24,7 @@ struct ReceivedStream {
   std::uint64_t count = 0;
   std::uint64_t missing = 0;  // holes between first and last, and what found no room
   std::uint64_t dropped = 0;  // of these, what found no room
-  std::uint64_t excused = 0;  // of neverRecorded(): lost before the file began that is judged
+  std::uint64_t excused = 0;  // of neverRecorded(): lost before the judged file began
   std::uint64_t stream_hash = 0;
 
   /// What was sent up to the last sample that came, and is not recorded: what is missing, and all before the first.

@@ -1,5 +1,5 @@
-/// What a run's numbers depend on besides its programs. A recording keeps it, so that a repetition with other bytes can
-/// name the cause.
+/// The libraries and the processor of this process. A recording keeps those of its recorder, so that a repetition with
+/// other bytes can name a likely cause.
 #pragma once
 
 #include <map>

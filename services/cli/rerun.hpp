@@ -21,7 +21,7 @@ struct Rerun {
   std::uint64_t hash = 0;                      // of the recording
   nlohmann::ordered_json result;               // of the repetition, as in its result.json
   std::filesystem::path recording;             // the repetition
-  std::vector<MadeWithDifference> made_with;   // what the two were not made with alike
+  std::vector<MadeWithDifference> made_with;   // what differs of what recorded the two
 
   [[nodiscard]] bool isIdentical() const { return !comparison.parting && !first_missing; }
   /// The verdict as a sentence. Where the bytes differ, what the two runs were made with comes first.

@@ -23,6 +23,7 @@ inline std::filesystem::path checkoutPath(const std::string& relative) {
 /// By the scenario's name. Adds a failure to the test when the file cannot be read to its end.
 inline std::map<std::string, std::uint64_t> expectedHashes() {
   std::ifstream file(checkoutPath("tests/hashes/expected.txt"));
+  EXPECT_TRUE(file.is_open()) << "cannot read tests/hashes/expected.txt";
   std::map<std::string, std::uint64_t> hashes;
   std::string scenario;
   for (std::uint64_t hash = 0; file >> scenario >> hash;) hashes[scenario] = hash;
