@@ -54,7 +54,8 @@ Rerun rerun(const std::filesystem::path& recording, const std::filesystem::path&
   }
   const HashedRun then = hashRun(recording), now = hashRun(made.recording);
   made.comparison = compare(then, now);
-  made.made_with = madeWithDifferences(runManifest(mcap::Reader(recording)), runManifest(mcap::Reader(made.recording)));
+  made.made_with = madeWithDifferences(metadataOf(mcap::Reader(recording), "baton.run"),
+                                       metadataOf(mcap::Reader(made.recording), "baton.run"));
   made.steps = then.steps.size();
   made.decisions = original.decisions.size();
   made.hash = then.hash();

@@ -75,19 +75,16 @@ void expectNotLeftOut(const mcap::Reader& reader, const std::string& topic, cons
   if (!hasTopic(reader, topic) && isLeftOut(reader, topic)) missTopic(topic, file);
 }
 
-mcap::StringMap runManifest(const mcap::Reader& reader) {
+mcap::StringMap metadataOf(const mcap::Reader& reader, const std::string& record) {
+  mcap::StringMap values;
   for (const mcap::Metadata& one : reader.metadata()) {
-    if (one.name == "baton.run") return one.values;
+    if (one.name == record) values.insert(one.values.begin(), one.values.end());
   }
-  return {};
+  return values;
 }
 
 std::string metadataValue(const mcap::Reader& reader, const std::string& record, const std::string& key) {
-  for (const mcap::Metadata& one : reader.metadata()) {
-    if (one.name != record) continue;
-    if (const auto found = one.values.find(key); found != one.values.end()) return found->second;
-  }
-  return {};
+  return mcap::valueOf(metadataOf(reader, record), key);
 }
 
 bool isCertified(const mcap::Reader& reader) {

@@ -29,8 +29,8 @@ void expectTopic(const mcap::Reader& reader, const std::string& topic, const std
 /// The same of one on which a run need not say anything: it is missed when it was left out on purpose.
 void expectNotLeftOut(const mcap::Reader& reader, const std::string& topic, const std::filesystem::path& file);
 
-/// The metadata record baton.run: what the run is and what it was made with. Empty when there is none.
-[[nodiscard]] mcap::StringMap runManifest(const mcap::Reader& reader);
+/// A metadata record; of several with one name, the first value of each key. Empty when there is none.
+[[nodiscard]] mcap::StringMap metadataOf(const mcap::Reader& reader, const std::string& record);
 
 /// A value of a metadata record; empty when there is no such record or key.
 [[nodiscard]] std::string metadataValue(const mcap::Reader& reader, const std::string& record, const std::string& key);
