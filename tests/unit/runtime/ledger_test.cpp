@@ -411,7 +411,7 @@ TEST_F(LedgerTest, WhatWasLostBeforeTheFileBeganIsExcusedAndNothingElse) {
 TEST_F(LedgerTest, WhatWasSentBeforeTheFirstThatCameCanBeExcusedAsWell) {
   transmit(state_, 20, [](std::uint64_t sequence) { return sequence > 8 && sequence != 12; });
   Ledger::Stream& stream = ledger_.streamOf(state_.key());
-  EXPECT_EQ(ledger_.missing(), 1u) << "nobody knows yet whether 1 to 8 were for us";
+  EXPECT_EQ(ledger_.missing(), 1u) << "samples 1 to 8 may have been sent before the recorder was matched";
   EXPECT_EQ(stream.second.neverRecorded(), 9u);
   ledger_.addManifest(manifestOf("plant", {&state_}));
   ledger_.addManifest(manifestOf("environment", {}));
