@@ -66,6 +66,12 @@ bool Ledger::hasManifestOf(const std::string& service) const {
                      [&](const msg::ServiceManifest& manifest) { return service == manifest.name().c_str(); });
 }
 
+std::size_t Ledger::services() const {
+  std::set<std::string> names;
+  for (const msg::ServiceManifest& manifest : manifests_) names.insert(manifest.name().c_str());
+  return names.size();
+}
+
 std::set<Ledger::Key> Ledger::vouchedFor() const {
   std::set<Key> result;
   for (const msg::ServiceManifest& manifest : manifests_) {

@@ -93,7 +93,8 @@ class Ledger {
   [[nodiscard]] const std::map<Key, ReceivedStream>& streams() const { return streams_; }
   [[nodiscard]] const std::vector<Gap>& gaps() const { return gaps_; }
   [[nodiscard]] const std::set<std::string>& leftOut() const { return left_out_; }
-  [[nodiscard]] std::size_t manifests() const { return manifests_.size(); }
+  /// How many services have sent a manifest, each counted once, however many of its processes did.
+  [[nodiscard]] std::size_t services() const;
   /// Samples that never came, on topics of which none may be missing: of a status only the latest word counts.
   [[nodiscard]] std::uint64_t missing() const;
 

@@ -116,10 +116,13 @@ void Service::peerJoined(const dds::Peer& peer) {
 }
 
 void Service::giveWay(const std::string& why) {
-  // Nothing is published: the name is the other one's, who must not be taken for failed.
-  if (!gave_way_) spdlog::error("{}; this one stops", why);
-  gave_way_ = true;
-  stop(ExitCode::kUnavailable);
+  if (gave_way_.exchange(true)) return;
+  spdlog::error("{}; this one stops", why);
+  // Its status says nothing of this: the name is the other one's, who must not be taken for failed.
+  asio::post(executor_, [this] {
+    exit_code_ = ExitCode::kUnavailable;
+    leave();
+  });
 }
 
 void Service::matchesChanged() {
@@ -243,7 +246,8 @@ void Service::publishManifest() {
     const msg::StreamManifest stream = manifest();
     if (stream.count() > 0) message.streams().push_back(stream);
   }
-  manifest_->write(message);
+  // Who gave way before it sent anything has nothing to add, and the other one's manifest is still to come.
+  if (!gave_way_ || !message.streams().empty()) manifest_->write(message);
   if (on_end_) asio::post(executor_, on_end_);
 }
 

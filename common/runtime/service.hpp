@@ -111,7 +111,8 @@ class Service {
   [[nodiscard]] bool isFromBefore(const dds::RawSample& sample) const {
     return sample.source_timestamp_ns < participant_.self().started_ns;
   }
-  /// Ends run() because another process has this one's place; any thread.
+  /// Ends run() because another process has this one's place; what was sent until then stands in a manifest, as when it
+  /// leaves on a signal. Any thread.
   void giveWay(const std::string& why);
   /// Matched with everybody it needs; any thread.
   [[nodiscard]] bool isReady() const { return ready_; }

@@ -44,7 +44,7 @@ TEST_F(VerifyTest, AWholeRecordingIsProvenComplete) {
   const Verification found = verifyWith({});
   EXPECT_EQ(found.verdict(), RecordingVerdict::kComplete) << all(found);
   EXPECT_EQ(all(found), "");
-  EXPECT_EQ(found.ledger.manifests(), 3U);
+  EXPECT_EQ(found.ledger.services(), 3U);
   EXPECT_EQ(found.messages, 3 * 200U + 3U);
   EXPECT_EQ(found.ledger.streams().size(), 6U);
 }

@@ -229,7 +229,9 @@ TEST_F(LedgerTest, WhatServicesSayIsReadFromWhatIsBooked) {
   ledger_.book(manifests, 1, encoded(manifestOf("plant", {&state_})));
   ledger_.book(manifests, 2, encoded(manifestOf("environment", {})));
   EXPECT_TRUE(ledger_.isComplete());
-  EXPECT_EQ(ledger_.manifests(), 2u);
+  EXPECT_EQ(ledger_.services(), 2u);
+  ledger_.book(manifests, 3, encoded(manifestOf("environment", {})));
+  EXPECT_EQ(ledger_.services(), 2u) << "started again, or a second copy: one service";
 
   msg::ServiceStatus joined;
   joined.name("late");
