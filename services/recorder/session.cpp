@@ -90,10 +90,7 @@ void RecordingSession::takeBatch(const SampleQueue::Batch& batch) {
     if (stream.credit) credit_.came(*stream.credit, payload);
     if (!stream.is_status) ++progress_;
     // Also what found no room in the queue, which is booked behind the batch it was dropped from.
-    const ReceivedStream& received = stream.received->second;
-    const std::uint64_t lost_before = received.missing - std::exchange(stream.missing_so_far, received.missing);
-    const bool came_late = received.count == 1 && received.first_sequence > 1;
-    if (lost_before > 0 || came_late) stream.lost_at = credit_.elapsedSteps();
+    const std::uint64_t lost_before = stream.booked(credit_.elapsedSteps());
     if (stream.is_recorded) keep(stream, entry, payload, lost_before);
     if (stream.role != Stream::Role::kOther) learn(stream, payload);
   }

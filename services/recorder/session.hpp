@@ -63,7 +63,6 @@ class RecordingSession {
   std::string finish(const Ending& ending);
   std::string writeRing(const std::string& path, const Ending& ending);
   std::string close(Recording& recording, std::uint64_t begun_at, const Ending& ending, const std::vector<Hole>& holes);
-  void excuseLosses(const Recording& recording, std::uint64_t begun_at);
   void closeAll();
   void fail(const std::string& what);
 

@@ -73,20 +73,13 @@ std::string RecordingSession::finish(const Ending& ending) {
   return summary;
 }
 
-/// Samples of which it was noticed before the file began that they are missing are no loss of this file. Whatever may
-/// lie within it is: what was noticed later, and holes between samples that are in it.
-void RecordingSession::excuseLosses(const Recording& recording, std::uint64_t begun_at) {
-  for (const auto& [key, stream] : streams_) {
-    ReceivedStream& received = stream.received->second;
-    received.excused = stream.lost_at < begun_at && recording.missing(stream) == 0 ? received.neverRecorded() : 0;
-  }
-}
-
 std::string RecordingSession::close(Recording& recording, std::uint64_t begun_at, const Ending& ending,
                                     const std::vector<Hole>& holes) {
   for (const std::string& topic : topics_.leftOut()) ledger_.leaveOut(topic);
   for (const std::string& what : topics_.unreadable()) ledger_.cannotRecord(what);
-  excuseLosses(recording, begun_at);
+  for (const auto& [key, stream] : streams_) {
+    stream.received->second.excused = stream.excusedIn(begun_at, recording.missing(stream));
+  }
   Certificate certificate(ledger_, ending);
   certificate.setUnmatched(topics_.unmatched());
   for (const auto& [key, stream] : streams_) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "mcap/records.hpp"
 #include "runtime/ledger.hpp"
@@ -26,11 +27,26 @@ struct Stream {
   bool is_status = false;
   bool is_manifest = false;          // what is sent at the end: kept in a pause as well
   std::uint64_t missing_so_far = 0;  // of what came, when its latest sample came
-  std::uint64_t lost_at = 0;         // steps of the run, when it was noticed last that samples are missing
+  std::uint64_t lost_at = 0;         // steps of the run, when it was noticed last that samples never came
   bool lasts = false;                // late joiners are told of what was before
 
   [[nodiscard]] const std::string& topic() const { return received->first.first; }
   [[nodiscard]] const dds::Guid& writer() const { return received->first.second; }
+
+  /// A sample has been booked at this step of the run. Returns how many of its writer never came between the one before
+  /// and this.
+  std::uint64_t booked(std::uint64_t elapsed_steps) {
+    const ReceivedStream& account = received->second;
+    const std::uint64_t lost_before = account.missing - std::exchange(missing_so_far, account.missing);
+    const bool begins_late = account.count == 1 && account.first_sequence > 1;
+    if (lost_before > 0 || begins_late) lost_at = elapsed_steps;
+    return lost_before;
+  }
+  /// What never came and is no loss of a file that began at this step: all of it, when it was noticed before that and
+  /// none is missing between samples that are in the file.
+  [[nodiscard]] std::uint64_t excusedIn(std::uint64_t begun_at, std::uint64_t missing_between) const {
+    return lost_at < begun_at && missing_between == 0 ? received->second.neverRecorded() : 0;
+  }
 };
 
 }  // namespace baton
