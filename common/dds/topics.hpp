@@ -85,9 +85,11 @@ BATON_TOPICS(BATON_TOPIC_CONSTANT)
 #define BATON_TOPIC_FACTS(constant, name, type, profile, from) static_cast<const TopicFacts&>(constant),
 inline constexpr std::array kAll{BATON_TOPICS(BATON_TOPIC_FACTS)};
 #undef BATON_TOPIC_FACTS
-static_assert(std::ranges::all_of(kAll, [](const TopicFacts& topic) {
-  return isStatusTopic(topic.name) == (topic.profile == Profile::kStatus);
-}));
+static_assert(std::ranges::all_of(kAll,
+                                  [](const TopicFacts& topic) {
+                                    return isStatusTopic(topic.name) == (topic.profile == Profile::kStatus);
+                                  }),
+              "a topic with the profile kStatus is called ..._status, and no other is");
 }  // namespace topics
 #undef BATON_TOPICS
 

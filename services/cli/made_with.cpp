@@ -13,10 +13,17 @@ std::vector<MadeWithDifference> madeWithDifferences(const mcap::StringMap& then,
   return differences;
 }
 
-std::string toText(const MadeWithDifference& difference) {
-  const auto orUnknown = [](const std::string& value) { return value.empty() ? "unknown" : value; };
-  return difference.key + ": " + orUnknown(difference.then) + " in the recording, " + orUnknown(difference.now) +
-         " now";
+std::string toText(const std::vector<MadeWithDifference>& differences) {
+  std::string text, unsaid;
+  for (const MadeWithDifference& one : differences) {
+    if (one.then.empty() || one.now.empty()) {
+      unsaid += (unsaid.empty() ? "" : ", ") + one.key;
+    } else {
+      text += (text.empty() ? "" : "; ") + one.key + ": " + one.then + " in the recording, " + one.now + " now";
+    }
+  }
+  if (!unsaid.empty()) text += (text.empty() ? "" : "; ") + ("one of the two does not say its " + unsaid);
+  return text;
 }
 
 }  // namespace baton

@@ -20,7 +20,8 @@ struct MadeWithDifference {
 [[nodiscard]] std::vector<MadeWithDifference> madeWithDifferences(const mcap::StringMap& then,
                                                                   const mcap::StringMap& now);
 
-/// As in "mathematics: SLEEF 3.5.1 in the recording, SLEEF 3.6.1 now".
-[[nodiscard]] std::string toText(const MadeWithDifference& difference);
+/// As in "mathematics: SLEEF 3.5.1 in the recording, SLEEF 3.6.1 now". What only one of the two says comes last, by
+/// name alone: nobody can tell whether it differs.
+[[nodiscard]] std::string toText(const std::vector<MadeWithDifference>& differences);
 
 }  // namespace baton

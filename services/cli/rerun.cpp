@@ -20,7 +20,7 @@ std::uint64_t endOf(const RecordedRun& run) {
 
 std::string Rerun::text() const {
   std::string differs = "differs: ";
-  for (const MadeWithDifference& one : made_with) differs += toText(one) + "; ";
+  if (!made_with.empty()) differs += toText(made_with) + "; ";
   if (const auto& parting = comparison.parting) {
     return differs + fmt::format("first at step {} in {}", parting->step, parting->topic);
   }

@@ -13,16 +13,13 @@
 #include <vector>
 
 #include "runtime/scenario.hpp"
+#include "support/checkout.hpp"
 
 namespace baton::test {
 
-inline std::filesystem::path checkoutPath(const std::string& relative) {
-  return std::filesystem::path(__FILE__).parent_path().parent_path().parent_path() / relative;
-}
-
 /// By the scenario's name. Adds a failure to the test when the file cannot be read to its end.
 inline std::map<std::string, std::uint64_t> expectedHashes() {
-  std::ifstream file(checkoutPath("tests/hashes/expected.txt"));
+  std::ifstream file(checkoutFolder() / "tests/hashes/expected.txt");
   EXPECT_TRUE(file.is_open()) << "cannot read tests/hashes/expected.txt";
   std::map<std::string, std::uint64_t> hashes;
   std::string scenario;
@@ -39,7 +36,7 @@ inline bool needsProcesses(const Scenario& scenario) {
 /// All scenarios of deploy/scenarios whose bytes are determined: those in lockstep and with an end.
 inline std::vector<Scenario> determinedScenarios() {
   std::vector<Scenario> scenarios;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(checkoutPath("deploy/scenarios"))) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(deployFolder() / "scenarios")) {
     if (entry.path().extension() != ".yaml") continue;
     Scenario scenario = loadScenario(entry.path().string());
     if (scenario.end_step > 0 && scenario.mode != SimMode::kRealtime) scenarios.push_back(std::move(scenario));

@@ -64,7 +64,6 @@ int waitFor(pid_t pid, const std::vector<fs::path>& outputs) {
 }  // namespace
 
 fs::path programFolder() { return BATON_TEST_PROGRAMS; }
-fs::path deployFolder() { return BATON_TEST_DEPLOY; }
 
 Finished runProgram(const fs::path& program, const std::vector<std::string>& arguments, const fs::path& home) {
   static std::atomic<int> count{0};  // tests call this from several threads

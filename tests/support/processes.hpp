@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "support/checkout.hpp"
+
 namespace baton::test {
 
 struct Finished {
@@ -45,9 +47,8 @@ class Bench {
   std::map<int, std::filesystem::path> started_;  // process id and log
 };
 
-/// Where the programs and the repository's files are.
+/// Where the programs are.
 [[nodiscard]] std::filesystem::path programFolder();
-[[nodiscard]] std::filesystem::path deployFolder();
 
 /// Runs a program to its end.
 [[nodiscard]] Finished runProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments,

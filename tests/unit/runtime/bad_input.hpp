@@ -12,18 +12,13 @@
 #include "base/error.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/yaml.hpp"
+#include "support/checkout.hpp"
 
 namespace baton::test {
 
-/// A file or folder below deploy/ of this checkout.
-inline std::string deployPath(const std::string& relative) {
-  const auto root = std::filesystem::path(__FILE__).parent_path() / "../../..";
-  return (root / "deploy" / relative).lexically_normal().string();
-}
-
 /// The scenario of that text, for the report's arm; `file` is only a name for messages.
 inline Scenario rppScenario(const std::string& file, const std::string& text) {
-  static const std::string robot = readYamlFile(deployPath("robots/rpp.yaml"));
+  static const std::string robot = readYamlFile((deployFolder() / "robots/rpp.yaml").string());
   return parseScenario(file, text, "rpp.yaml", robot);
 }
 

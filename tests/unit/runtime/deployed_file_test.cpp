@@ -14,13 +14,13 @@
 namespace baton {
 namespace {
 
-using test::deployPath;
+using test::deployFolder;
 using test::refusal;
 using test::replaced;
 
 TEST(DeployedScenarios, AllLoadAndAreNamedAfterTheirFiles) {
   std::size_t count = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(deployPath("scenarios"))) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator((deployFolder() / "scenarios").string())) {
     if (entry.path().extension() != ".yaml") continue;
     SCOPED_TRACE(entry.path());
     Scenario s;
@@ -35,7 +35,7 @@ TEST(DeployedScenarios, AllLoadAndAreNamedAfterTheirFiles) {
 /// The scenarios' names in a folder below deploy/scenarios.
 std::set<std::string> scenariosIn(const std::string& folder) {
   std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(deployPath("scenarios/" + folder))) {
+  for (const auto& entry : std::filesystem::directory_iterator((deployFolder() / ("scenarios/" + folder)).string())) {
     names.insert(entry.path().stem().string());
   }
   return names;
@@ -45,7 +45,7 @@ TEST(DeployedReport, RunsToAnEndAndIsRecorded) {
   for (const std::string folder : {"report", "cosim", "handover"}) {
     for (const std::string& name : scenariosIn(folder)) {
       SCOPED_TRACE(name);
-      const Scenario s = loadScenario(deployPath("scenarios/" + folder + "/" + name + ".yaml"));
+      const Scenario s = loadScenario((deployFolder() / ("scenarios/" + folder + "/" + name + ".yaml")).string());
       EXPECT_GT(s.end_step, 0u);
       EXPECT_TRUE(s.recording.enabled);
       EXPECT_EQ(s.mode, SimMode::kLockstep);
@@ -57,7 +57,7 @@ TEST(DeployedReport, RunsToAnEndAndIsRecorded) {
 TEST(DeployedReport, StartsEachScenarioByNamingItsFigure) {
   for (const std::string& name : scenariosIn("report")) {
     SCOPED_TRACE(name);
-    std::istringstream lines(readYamlFile(deployPath("scenarios/report/" + name + ".yaml")));
+    std::istringstream lines(readYamlFile((deployFolder() / ("scenarios/report/" + name + ".yaml")).string()));
     std::string head;
     for (std::string line; std::getline(lines, line) && line.starts_with("# ");) head += line;
     const std::size_t number = std::stoul(name.substr(3));
@@ -67,7 +67,7 @@ TEST(DeployedReport, StartsEachScenarioByNamingItsFigure) {
 }
 
 TEST(DeployedReport, ShowsEveryScenarioInAFigureAndHasAllThatItShows) {
-  const std::string file = deployPath("figures/report.yaml");
+  const std::string file = (deployFolder() / "figures/report.yaml").string();
   const YamlMap list = YamlNode::parse(file, readYamlFile(file)).map({"figures", "studies", "errata"});
   std::set<std::string> shown;
   for (const YamlNode& node : list["figures"].list(1, 100)) {
@@ -106,7 +106,7 @@ TEST(DeployedReport, ShowsEveryScenarioInAFigureAndHasAllThatItShows) {
 }
 
 TEST(DeployedRobots, AllLoadAndAreNamedAfterTheirFiles) {
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(deployPath("robots"))) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator((deployFolder() / "robots").string())) {
     if (entry.path().extension() != ".yaml") continue;
     SCOPED_TRACE(entry.path());
     EXPECT_EQ(loadRobot(entry.path().string()).name, entry.path().stem().string());
@@ -114,7 +114,7 @@ TEST(DeployedRobots, AllLoadAndAreNamedAfterTheirFiles) {
 }
 
 TEST(DeployedDemo, TellsTheStoryItsCommentsTell) {
-  const Scenario s = loadScenario(deployPath("scenarios/demo.yaml"));
+  const Scenario s = loadScenario((deployFolder() / "scenarios/demo.yaml").string());
   const Trajectory trajectory(s.robot, s.trajectory);
   const double wall = s.walls.at(0).point_m.z();
   const auto height = [&](std::uint64_t step) {
@@ -161,8 +161,8 @@ std::vector<std::string> knownKeys(const std::string& message) {
 }
 
 TEST(DeployedDemo, ExplainsEveryKey) {
-  const std::string text = readYamlFile(deployPath("scenarios/demo.yaml"));
-  const std::string robot = readYamlFile(deployPath("robots/rpp.yaml"));
+  const std::string text = readYamlFile((deployFolder() / "scenarios/demo.yaml").string());
+  const std::string robot = readYamlFile((deployFolder() / "robots/rpp.yaml").string());
   // Places of the file where an unknown key can be put, in blocks and in flows; a sine and noise are only in comments.
   const std::string waypoints =
       text.substr(text.find("  waypoints:"), text.find("  force_N:") - text.find("  waypoints:"));
@@ -195,8 +195,8 @@ TEST(DeployedDemo, ExplainsEveryKey) {
 }
 
 TEST(DeployedDemo, HasExamplesInItsCommentsThatWork) {
-  const std::string text = readYamlFile(deployPath("scenarios/demo.yaml"));
-  const std::string robot = readYamlFile(deployPath("robots/rpp.yaml"));
+  const std::string text = readYamlFile((deployFolder() / "scenarios/demo.yaml").string());
+  const std::string robot = readYamlFile((deployFolder() / "robots/rpp.yaml").string());
   // The commented lines from the one that has this key on, without their '# '.
   const auto example = [&](const std::string& key) {
     std::istringstream lines(text.substr(text.find("\n#   " + key + ":") + 1));
@@ -221,7 +221,7 @@ TEST(DeployedDemo, HasExamplesInItsCommentsThatWork) {
 }
 
 TEST(DeployedRobots, OfTheReportExplainEveryKey) {
-  const std::string text = readYamlFile(deployPath("robots/rpp.yaml"));
+  const std::string text = readYamlFile((deployFolder() / "robots/rpp.yaml").string());
   const std::vector<std::pair<std::string, std::string>> places{
       {"name: rpp ", "zzz: 1\nname: rpp "},
       {"base: {", "base: {zzz: 1, "},

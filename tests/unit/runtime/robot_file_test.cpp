@@ -14,7 +14,7 @@ namespace baton {
 namespace {
 
 using test::BadInput;
-using test::deployPath;
+using test::deployFolder;
 using test::refusal;
 using test::replaced;
 
@@ -177,13 +177,13 @@ void expectSameRobot(const RobotModel& a, const RobotModel& b) {
 
 TEST(DeployedRpp, IsTheArmOfTheReport) {
   std::vector<std::string> warnings;
-  const RobotModel arm = loadRobot(deployPath("robots/rpp.yaml"), &warnings);
+  const RobotModel arm = loadRobot((deployFolder() / "robots/rpp.yaml").string(), &warnings);
   EXPECT_TRUE(warnings.empty());
   expectSameRobot(arm, test::rppRobot());
 }
 
 TEST(DeployedRpp, ReproducesThePrintedDigits) {
-  const RobotModel arm = loadRobot(deployPath("robots/rpp.yaml"));
+  const RobotModel arm = loadRobot((deployFolder() / "robots/rpp.yaml").string());
   const JointVector q = Vector3(kPi / 3.0, 0.1, 0.1);
   JointMatrix B;
   JointVector g;
@@ -198,7 +198,7 @@ TEST(DeployedRpp, ReproducesThePrintedDigits) {
 
 TEST(DeployedLink1, IsThePendulumOfTheReportAndWarnsThatItIsNoBody) {
   std::vector<std::string> warnings;
-  const RobotModel link = loadRobot(deployPath("robots/link1.yaml"), &warnings);
+  const RobotModel link = loadRobot((deployFolder() / "robots/link1.yaml").string(), &warnings);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("'pivot'"), std::string::npos) << warnings[0];
   expectSameRobot(link, test::link1Robot());

@@ -12,7 +12,7 @@ namespace baton {
 namespace {
 
 using test::BadInput;
-using test::deployPath;
+using test::deployFolder;
 using test::refusal;
 using test::replaced;
 using test::rppScenario;
@@ -75,7 +75,7 @@ TEST(ScenarioFile, GivesEachFieldItsPlace) {
   EXPECT_EQ(s.file, "trial.yaml");
   EXPECT_EQ(s.text, kTrial);
   EXPECT_EQ(s.robot_file, "rpp.yaml");
-  EXPECT_EQ(s.robot_text, readYamlFile(deployPath("robots/rpp.yaml")));
+  EXPECT_EQ(s.robot_text, readYamlFile((deployFolder() / "robots/rpp.yaml").string()));
   EXPECT_EQ(s.name, "trial");
   EXPECT_EQ(s.description, "one line");
   EXPECT_EQ(s.robot.name, "rpp");
@@ -415,7 +415,7 @@ class ScenarioFolder : public testing::Test {
 };
 
 TEST_F(ScenarioFolder, FindsTheRobotRelativeToTheScenarioAndKeepsBothTexts) {
-  const std::string robot_text = readYamlFile(deployPath("robots/link1.yaml"));
+  const std::string robot_text = readYamlFile((deployFolder() / "robots/link1.yaml").string());
   write("robots/link.yaml", robot_text);
   const std::string text =
       "name: a\nrobot: ../robots/link.yaml\nstep_s: 0.001\ntrajectory: {waypoints: [{time_s: 0, position: [0]}]}\n"
