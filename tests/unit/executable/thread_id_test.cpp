@@ -4,11 +4,21 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <dlfcn.h>
+
 #include <cerrno>
+#include <filesystem>
 #include <thread>
 
 namespace baton {
 namespace {
+
+/// Or the other tests ask the C library, and prove nothing.
+TEST(ThreadId, IsAskedOfThisProgram) {
+  Dl_info found{};
+  ASSERT_NE(dladdr(dlsym(RTLD_DEFAULT, "syscall"), &found), 0);
+  EXPECT_TRUE(std::filesystem::equivalent(found.dli_fname, "/proc/self/exe")) << found.dli_fname;
+}
 
 TEST(ThreadId, IsTheKernelsInEveryThread) {
   for (int again = 0; again < 3; ++again) EXPECT_EQ(syscall(SYS_gettid), gettid());
