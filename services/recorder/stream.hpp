@@ -26,7 +26,8 @@ struct Stream {
   bool is_booked = true;              // so is what the account itself learns from
   bool is_status = false;
   bool is_manifest = false;          // what is sent at the end: kept in a pause as well
-  std::uint64_t missing_so_far = 0;  // of what came, when its latest sample came
+  std::uint64_t missing_so_far = 0;  // when its latest sample came
+  std::uint64_t noticed = 0;         // of what is missing
   std::uint64_t lost_at = 0;         // steps of the run, when it was noticed last that samples never came
   bool lasts = false;                // late joiners are told of what was before
 
@@ -39,8 +40,13 @@ struct Stream {
     const ReceivedStream& account = received->second;
     const std::uint64_t lost_before = account.missing - std::exchange(missing_so_far, account.missing);
     const bool begins_late = account.count == 1 && account.first_sequence > 1;
-    if (lost_before > 0 || begins_late) lost_at = elapsed_steps;
+    if (std::exchange(noticed, account.missing) < account.missing || begins_late) lost_at = elapsed_steps;
     return lost_before;
+  }
+  /// Some came at this step and found no room, which the account knows.
+  void dropped(std::uint64_t elapsed_steps) {
+    noticed = received->second.missing;
+    lost_at = elapsed_steps;
   }
   /// What never came and is no loss of a file that began at this step: all of it, when it was noticed before that and
   /// none is missing between samples that are in the file.

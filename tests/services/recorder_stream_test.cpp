@@ -44,6 +44,17 @@ TEST_F(RecorderStream, AGapOwesItToTheFileItWasNoticedIn) {
   EXPECT_EQ(stream_.excusedIn(55, 3), 0U) << "its samples are on both sides of the gap";
 }
 
+TEST_F(RecorderStream, WhatFoundNoRoomIsOwedToTheFileOfThatTime) {
+  comes(1, 10);
+  ledger_.dropped(*stream_.received, 2, 4);
+  stream_.dropped(50);
+  EXPECT_EQ(comes(5, 200), 3U);
+  EXPECT_EQ(stream_.excusedIn(40, 0), 0U);
+  EXPECT_EQ(stream_.excusedIn(100, 0), 3U) << "that the next sample came later makes it no loss of a later file";
+  EXPECT_EQ(comes(8, 300), 2U);
+  EXPECT_EQ(stream_.excusedIn(250, 0), 0U) << "a gap of its own";
+}
+
 TEST_F(RecorderStream, ALaterGapTakesTheExcuseFromAnEarlierOne) {
   comes(4, 50);
   comes(9, 150);
