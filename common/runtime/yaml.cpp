@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "control/nearest_name.hpp"
 
 namespace baton {
@@ -22,10 +23,7 @@ constexpr std::size_t kMaxShown = 60;  // bytes of a file's text in a message
 
 /// Text from outside, fit for a terminal: short, on one line, without control characters.
 std::string tidied(const std::string& text) {
-  std::string tidy = text.substr(0, kMaxShown);
-  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
-  std::replace_if(tidy.begin(), tidy.end(), is_control, ' ');
-  return text.size() > kMaxShown ? tidy + "..." : tidy;
+  return printable(text.substr(0, kMaxShown)) + (text.size() > kMaxShown ? "..." : "");
 }
 
 std::string quoted(const std::string& text) { return "'" + tidied(text) + "'"; }

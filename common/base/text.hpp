@@ -1,0 +1,29 @@
+/// Text from outside: names and words that somebody else chose, before they are shown or used.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+namespace baton {
+
+[[nodiscard]] inline bool isControlCharacter(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
+
+[[nodiscard]] inline bool hasControlCharacters(std::string_view text) {
+  return std::ranges::any_of(text, isControlCharacter);
+}
+
+/// Fit for a terminal and for one line: each control character is a space.
+[[nodiscard]] inline std::string printable(std::string_view text) {
+  std::string result(text);
+  std::ranges::replace_if(result, isControlCharacter, ' ');
+  return result;
+}
+
+/// A name that leads to no other folder, with the ending (".mcap") behind at least one character.
+[[nodiscard]] inline bool isFileName(std::string_view name, std::string_view ending) {
+  return name.size() > ending.size() && name.ends_with(ending) && name.front() != '.' &&
+         name.find('/') == std::string_view::npos && !hasControlCharacters(name);
+}
+
+}  // namespace baton
