@@ -4,13 +4,51 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "control/nearest_name.hpp"
+#include "time/pacer.hpp"
 
 namespace baton {
 
+namespace {
+
+/// The whole text as a number of that type.
+template <class Number>
+std::optional<Number> numberIn(const std::string& text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
+/// CLI11 takes -1 for a large unsigned number, and nan and inf for numbers.
+void guardNumbers(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    const std::string type = option->get_type_name();
+    if (type.starts_with("UINT")) {
+      option->check(CLI::Validator(
+          [](const std::string& text) -> std::string {
+            return numberIn<std::uint64_t>(text) ? "" : "expected a whole number from 0 on, found '" + text + "'";
+          },
+          ""));
+    } else if (type.starts_with("FLOAT")) {
+      option->check(CLI::Validator(
+          [](const std::string& text) -> std::string {
+            const auto number = numberIn<double>(text);
+            return number && std::isfinite(*number) ? "" : "expected a finite number, found '" + text + "'";
+          },
+          ""));
+    }
+  }
+  for (CLI::App* command : app.get_subcommands({})) guardNumbers(*command);
+}
+
+}  // namespace
+
 bool parseCommandLine(CLI::App& app, int argc, const char* const* argv) {
+  guardNumbers(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {
@@ -23,6 +61,7 @@ bool parseCommandLine(CLI::App& app, int argc, const char* const* argv) {
 }
 
 ExitCode runCommand(CLI::App& app, int argc, const char* const* argv) {
+  guardNumbers(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -68,18 +107,16 @@ double parseRate(const std::string& what, const std::string& text) {
   if (text == "max") return 0.0;
   double rate = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(rate) || rate <= 0.0) {
-    throw UsageError(what + ": expected a number above 0, or max, found '" + text + "'");
+  if (error != std::errc() || end != text.data() + text.size() || !(rate >= kMinRate && rate <= kMaxRate)) {
+    throw UsageError(what + ": expected a number from 0.0001 to 1000000, or max, found '" + text + "'");
   }
   return rate;
 }
 
 CLI::Validator notNegative() {
   return {[](const std::string& text) -> std::string {
-            double number = -1.0;
-            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-            const bool is_right =
-                error == std::errc() && end == text.data() + text.size() && std::isfinite(number) && number >= 0.0;
+            const auto number = numberIn<double>(text);
+            const bool is_right = number && std::isfinite(*number) && *number >= 0.0;
             return is_right ? "" : "expected a number that is not below 0, found '" + text + "'";
           },
           "NONNEGATIVE"};
@@ -87,10 +124,8 @@ CLI::Validator notNegative() {
 
 CLI::Validator atLeastOne() {
   return {[](const std::string& text) -> std::string {
-            std::uint64_t number = 0;
-            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-            const bool is_right = error == std::errc() && end == text.data() + text.size() && number > 0;
-            return is_right ? "" : "expected a whole number from 1 on, found '" + text + "'";
+            const auto number = numberIn<std::uint64_t>(text);
+            return number && *number > 0 ? "" : "expected a whole number from 1 on, found '" + text + "'";
           },
           "COUNT"};
 }

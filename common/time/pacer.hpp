@@ -7,6 +7,9 @@
 
 namespace baton {
 
+/// Slower than that looks like a standstill; for faster there is 0.
+inline constexpr double kMinRate = 1e-4, kMaxRate = 1e6;
+
 class Pacer {
  public:
   /// @param rate simulated seconds per second; 0 means no pacing.

@@ -1,6 +1,7 @@
 #include "time/step_master.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace baton {
 
@@ -57,7 +58,8 @@ void StepMaster::stepBy(std::uint64_t steps) noexcept {
   if (isOver() || phase_ == SimPhase::kStarting || steps == 0) return;
   // Steps asked for while others are still being run come on top of those.
   const bool is_stepping = phase_ == SimPhase::kRunning && step_until_ > step_;
-  step_until_ = (is_stepping ? step_until_ : step_) + steps;
+  const std::uint64_t from = is_stepping ? step_until_ : step_;
+  step_until_ = from + std::min(steps, std::numeric_limits<std::uint64_t>::max() - from);
   phase_ = SimPhase::kRunning;
 }
 

@@ -1,5 +1,7 @@
 #include "branch_command.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -43,7 +45,11 @@ struct Fork {
 std::uint64_t stepOf(const BranchRequest& request, const Scenario& scenario) {
   if (request.at_step) return *request.at_step;
   if (!request.at_s) throw UsageError("branch: expected --at STEP or --at-time SECONDS");
-  return static_cast<std::uint64_t>(std::llround(*request.at_s / scenario.stepSeconds()));
+  const double steps = std::round(*request.at_s / scenario.stepSeconds());
+  if (!(steps >= 0.0 && steps < 1e18)) {
+    throw UsageError(fmt::format("--at-time: expected seconds from 0 on, found {:g}", *request.at_s));
+  }
+  return static_cast<std::uint64_t>(steps);
 }
 
 Fork read(const BranchRequest& request) {
@@ -165,7 +171,7 @@ void branch(const BranchRequest& request, ExitCode& exit_code) {
                      " s, found " + secondsText(changed.end_step, scenario) + " s");
   }
   const fs::path folder = stateFolder() / "branches" / newRunId();
-  fs::create_directories(folder);
+  makeFolder(folder);
   const CheckpointSet set = checkpointAt(fork, folder, request.run);
 
   RunRequest run = request.run;

@@ -1,5 +1,7 @@
 #include "operate_commands.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
@@ -64,7 +66,7 @@ void status(const CellTarget& target) {
   if (sim.end_step() > 0) std::printf(" of %llu", ull{sim.end_step()});
   std::printf(", %.4f s of motion in %.2f s, %s%s, %s holds the baton\n", time_s, sim.elapsed_s(),
               sim.mode() == msg::SIM_MODE_REALTIME ? "realtime" : "lockstep",
-              sim.rate() > 0.0 ? (" at rate " + std::to_string(sim.rate())).c_str() : " as fast as possible",
+              sim.rate() > 0.0 ? fmt::format(" at rate {:g}", sim.rate()).c_str() : " as fast as possible",
               sim.holder().size() > 0 ? sim.holder().c_str() : "the brake");
   if (const std::string text = timingText(timing); !text.empty()) std::printf("%s\n", text.c_str());
   if (sim.waiting_for().size() > 0) std::printf("waits for %s\n", sim.waiting_for().c_str());

@@ -121,6 +121,32 @@ TEST(CommandLine, EveryCommandHasHelp) {
   }
 }
 
+TEST(CommandLine, RefusesNumbersThatAreNone) {
+  const Bench bench;
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"sim", "step", "-1"},
+                                                  {"sim", "pause", "--at", "-1"},
+                                                  {"sim", "pause", "--at-time", "nan"},
+                                                  {"sim", "rate", "1e-300"},
+                                                  {"swap", "pd", "--at", "-5"},
+                                                  {"swap", "pd", "--blend", "nan"},
+                                                  {"branch", "x.mcap", "--at-time", "nan"}}) {
+    const Finished refused = bench.baton(command);
+    EXPECT_EQ(refused.exit_code, 2) << refused.out << refused.err;
+    EXPECT_NE(refused.err.find(command.back()), std::string::npos) << refused.err;
+  }
+}
+
+TEST(CommandLine, AFolderThatCannotBeMadeIsSaid) {
+  const Bench bench;
+  const std::string in_the_way = bench.write("cells", "a file where a folder should be");
+  const Finished refused = bench.baton({"status"});
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;
+  EXPECT_NE(refused.err.find("cannot make the folder " + in_the_way), std::string::npos) << refused.err;
+  const Finished too_long = bench.baton({"run", std::string(5000, 'a')});
+  EXPECT_EQ(too_long.exit_code, 2) << too_long.err;
+  EXPECT_EQ(too_long.err.find("unexpected"), std::string::npos) << too_long.err;
+}
+
 TEST(CommandLine, RefusesWrongInputWithWhereAndWhy) {
   const Bench bench;
   const auto expectRefusal = [&](const std::string& text, const std::vector<std::string>& words) {

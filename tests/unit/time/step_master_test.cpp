@@ -191,6 +191,16 @@ TEST(StepMaster, AskingAgainAddsToTheStepsThatAreLeft) {
   EXPECT_EQ(master.step(), 13u);
 }
 
+TEST(StepMaster, MoreStepsThanCanBeCountedAreNotFewer) {
+  StepMaster master({});
+  master.start();
+  for (int i = 0; i < 4; ++i) liveOneStep(master);
+  master.stepBy(~std::uint64_t{0});
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(liveOneStep(master), Hold::kNone);
+  master.stepBy(~std::uint64_t{0});
+  EXPECT_EQ(liveOneStep(master), Hold::kNone);
+}
+
 TEST(StepMaster, ResumeAndPauseCancelTheStepsThatAreLeft) {
   StepMaster master({});
   master.start();
