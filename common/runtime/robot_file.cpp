@@ -31,11 +31,13 @@ DhRow readDhRow(const YamlNode& node) {
 Matrix3 readInertia(const YamlNode& node) {
   const YamlMap tensor = node.map({"xx", "yy", "zz", "xy", "xz", "yz"});
   const auto component = [&](const char* key) { return tensor.numberOr(key, kInertia, 0.0); };
+  // All of them first: a comma initialiser that an exception leaves half filled ends the program.
+  const double xx = component("xx"), yy = component("yy"), zz = component("zz");
   const double xy = component("xy"), xz = component("xz"), yz = component("yz");
   Matrix3 inertia;
-  inertia << component("xx"), xy, xz,  //
-      xy, component("yy"), yz,         //
-      xz, yz, component("zz");
+  inertia << xx, xy, xz,  //
+      xy, yy, yz,         //
+      xz, yz, zz;
   return inertia;
 }
 
