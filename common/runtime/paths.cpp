@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace baton {
 namespace fs = std::filesystem;
@@ -39,6 +40,12 @@ fs::path stateFolder() {
   return fs::absolute(folder);
 }
 
+void makeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw UnavailableError("cannot make the folder " + folder.string() + ": " + error.message());
+}
+
 fs::path programFolder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
 bool isInstalled() {
@@ -64,14 +71,16 @@ fs::path dataFolder() {
 }
 
 fs::path findScenario(const std::string& name) {
-  if (fs::is_regular_file(name)) return fs::absolute(name);
+  std::error_code is_none;  // also a name that no file can have
+  if (fs::is_regular_file(name, is_none)) return fs::absolute(name);
   const fs::path folder = dataFolder() / "scenarios";
-  if (fs::path known = folder / (name + ".yaml"); fs::is_regular_file(known)) return known;
+  if (fs::path known = folder / (name + ".yaml"); fs::is_regular_file(known, is_none)) return known;
   std::string names;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".yaml") names += (names.empty() ? "" : ", ") + entry.path().stem().string();
   }
-  throw UsageError("scenario " + name + ": expected a file or one of " + names + ", found neither");
+  throw UsageError("scenario " + printable(name.substr(0, 200)) + ": expected a file or one of " + names +
+                   ", found neither");
 }
 
 std::filesystem::path outputPath(const std::string& out) {

@@ -34,6 +34,9 @@ namespace baton {
 /// there.
 [[nodiscard]] std::filesystem::path outputPath(const std::string& out);
 
+/// Makes a folder and those above it. Throws UnavailableError, saying which and why, when that cannot be.
+void makeFolder(const std::filesystem::path& folder);
+
 /// "20261122-031512-4f2a": sorts by time, newer runs after older ones.
 [[nodiscard]] std::string newRunId();
 

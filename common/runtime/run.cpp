@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <csignal>
+#include <filesystem>
 #include <iostream>
 
 #include "runtime/log.hpp"
@@ -18,6 +19,9 @@ int runGuarded(const std::string& name, const std::function<ExitCode()>& body) {
   } catch (const Error& error) {
     std::cerr << name << ": " << error.what() << '\n';
     return static_cast<int>(error.code());
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::cerr << name << ": cannot use " << error.path1().string() << ": " << error.code().message() << '\n';
+    return static_cast<int>(ExitCode::kUnavailable);
   } catch (const std::exception& error) {
     std::cerr << name << ": unexpected: " << error.what() << '\n';
     return static_cast<int>(ExitCode::kFailed);

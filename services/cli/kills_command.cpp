@@ -49,7 +49,7 @@ Trial tryOne(const Kill& kill, const Scenario& scenario, const std::string& undi
              const KillsRequest& request) {
   const std::string name = fmt::format("{:03}-{}-{}", kill.number, toString(kill.of.victim), toString(kill.of.way));
   const fs::path own = folder / name;
-  fs::create_directories(own);
+  makeFolder(own);
   Trial trial{.kill = kill, .run = {}, .objection = {}, .repetition = {}, .recording = folder / (name + ".mcap")};
   RunRequest run = request.run;
   run.out = trial.recording.string();
@@ -157,11 +157,11 @@ void kills(const KillsRequest& request, ExitCode& exit_code) {
   const fs::path folder =
       request.out.empty() ? stateFolder() / "kills" / newRunId() : fs::absolute(request.out).lexically_normal();
   const fs::path home = folder / "home";
-  fs::create_directories(home);
+  makeFolder(home);
   setenv("BATON_HOME", home.c_str(), 1);  // hundreds of runs do not belong among a person's own
 
   const fs::path undisturbed_folder = folder / "undisturbed";
-  fs::create_directories(undisturbed_folder);
+  makeFolder(undisturbed_folder);
   RunRequest plain = request.run;
   plain.out = (undisturbed_folder / "run.mcap").string();
   plain.overwrite = true;

@@ -41,7 +41,7 @@ nlohmann::ordered_json toJson(const Rerun& made, const std::string& recording) {
 
 void tellRerun(const RerunRequest& request, ExitCode& exit_code) {
   const fs::path folder = stateFolder() / "reruns" / newRunId();
-  fs::create_directories(folder);
+  makeFolder(folder);
   const bool is_kept = !request.run.out.empty();
   RunRequest run = request.run;
   if (!is_kept) run.out = (folder / "rerun.mcap").string();

@@ -7,6 +7,7 @@
 
 #include "report/shadow.hpp"
 #include "runtime/json.hpp"
+#include "runtime/paths.hpp"
 
 namespace baton {
 namespace {
@@ -32,7 +33,7 @@ void shadow(const ShadowRequest& request) {
     std::fputs(toText(table).c_str(), stdout);
   }
   if (request.out.empty()) return;
-  fs::create_directories(request.out);
+  makeFolder(request.out);
   draw(stem, run.trace.scenario.name + ": what each controller commanded, or would have", shadowPanels(run),
        {{.label = "", .trace = &run.trace}});
   if (!request.json) std::printf("%s.svg\n", stem.c_str());

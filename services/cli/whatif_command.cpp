@@ -18,6 +18,7 @@
 #include "report/plot.hpp"
 #include "report/theory_tools.hpp"
 #include "runtime/json.hpp"
+#include "runtime/paths.hpp"
 #include "runtime/progress_line.hpp"
 #include "whatif/command_file.hpp"
 #include "whatif/counterfactual.hpp"
@@ -94,7 +95,7 @@ Counterfactual makeWithFiles(const WhatIfRequest& request, const std::function<v
   Curves curves(request.file);
   const fs::path stem = stemOf(request, curves.scenario());
   const std::string file = stem.string() + ".mcap";
-  fs::create_directories(request.out);
+  makeFolder(request.out);
   if (std::error_code missing; fs::equivalent(file, request.file, missing)) {
     throw UsageError("--out " + request.out + ": expected a folder other than that of a recording called " + file);
   }

@@ -17,6 +17,7 @@
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
 #include "mcap/lookup.hpp"
+#include "runtime/paths.hpp"
 #include "schema/error.hpp"
 
 namespace baton {
@@ -53,9 +54,7 @@ class Export {
   explicit Export(const ExportRequest& request) : request_(request), messages_(request.selection) {}
 
   ExitCode run() {
-    std::error_code error;
-    std::filesystem::create_directories(request_.folder, error);
-    if (error) throw UnavailableError(request_.folder + ": cannot be made: " + error.message());
+    makeFolder(request_.folder);
     messages_.forEach("looking ", [&](const mcap::MessageView& message) { return look(message); });
     createFiles();
     messages_.forEach("writing ", [&](const mcap::MessageView& message) { return write(message); });

@@ -53,7 +53,7 @@ class Batch {
  public:
   Batch(const std::vector<fs::path>& scenarios, const BatchOptions& options)
       : options_(options), signals_(executor_, SIGINT, SIGTERM), timer_(executor_) {
-    fs::create_directories(options.folder);
+    makeFolder(options.folder);
     const std::string build = buildId();
     for (const fs::path& file : scenarios) {
       const Scenario scenario = loadScenario(file.string());
