@@ -63,10 +63,10 @@ struct PlannedChange {
 inline constexpr double kMaxBlend_s = 10.0;
 
 struct BatonConfig {
-  std::uint64_t margin_steps = 5;   // steps between the decision and the swap; 3 in realtime when left out
-  std::uint64_t blend_steps = 200;  // over which the difference between the two torques fades
-  double max_effort_step = 50.0;    // forecast above this is refused, any joint [N m or N]
-  double max_command = std::numeric_limits<double>::infinity();  // a holder that commands more has failed [N m or N]
+  std::uint64_t margin_steps = 5;     // steps between the decision and the swap; 3 in realtime when left out
+  std::uint64_t blend_steps = 200;    // over which the difference between the two torques fades
+  double max_effort_step = 50.0;      // forecast above this is refused, any joint [N m or N]
+  double max_command = 1e6;           // a holder that commands more has failed [N m or N]
   JointVector max_effort_rate;        // n entries: faster changes in a handover are counted [N m/s or N/s]
   std::vector<std::string> fallback;  // who takes over from a holder that fails, in order; then the brake
 };
