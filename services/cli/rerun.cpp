@@ -52,10 +52,15 @@ Rerun rerun(const std::filesystem::path& recording, const std::filesystem::path&
     made.result = session.result();
     made.recording = session.info().recording;
   }
-  const HashedRun then = hashRun(recording), now = hashRun(made.recording);
+  const HashedRun then = hashRun(recording);
+  HashedRun now;
+  // A repetition that ended before its first step has no messages of the loop, or no file.
+  if (made.result.at("steps").get<std::uint64_t>() > made.result.at("first_step").get<std::uint64_t>()) {
+    now = hashRun(made.recording);
+    made.made_with = madeWithDifferences(metadataOf(mcap::Reader(recording), "baton.run"),
+                                         metadataOf(mcap::Reader(made.recording), "baton.run"));
+  }
   made.comparison = compare(then, now);
-  made.made_with = madeWithDifferences(metadataOf(mcap::Reader(recording), "baton.run"),
-                                       metadataOf(mcap::Reader(made.recording), "baton.run"));
   made.steps = then.steps.size();
   made.decisions = original.decisions.size();
   made.hash = then.hash();
