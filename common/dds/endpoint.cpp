@@ -138,8 +138,12 @@ bool RawWriter::waitForAcknowledgments(int timeout_ms) {
 }
 
 struct RawReader::Impl final : DataReaderListener {
-  Impl(Participant& participant_in, const EndpointOptions& options, Callback callback_in, MatchCallback on_match_in)
-      : participant(participant_in), callback(std::move(callback_in)), on_match(std::move(on_match_in)) {
+  Impl(Participant& participant_in, const EndpointOptions& options, Callback callback_in, MatchCallback on_match_in,
+       Admission admission_in)
+      : participant(participant_in),
+        callback(std::move(callback_in)),
+        on_match(std::move(on_match_in)),
+        admission(std::move(admission_in)) {
     incoming.payload.reserve(options.max_payload);
     Participant::Impl& shared = participant.impl();
     Topic* topic = shared.topic(options.topic, options.type, options.max_payload, options.keyed);
@@ -160,12 +164,23 @@ struct RawReader::Impl final : DataReaderListener {
     SampleInfo info;
     while (fastdds::isDone(source->take_next_sample(&incoming, &info))) {
       if (!info.valid_data) continue;
+      const Guid writer = toGuid(info.sample_identity.writer_guid());
+      if (!isAdmitted(writer)) {
+        ++refused;
+        continue;
+      }
       callback({.payload = incoming.payload,
                 .sequence = info.sample_identity.sequence_number().to64long(),
                 .source_timestamp_ns = info.source_timestamp.to_ns(),
                 .reception_timestamp_ns = info.reception_timestamp.to_ns(),
-                .writer = toGuid(info.sample_identity.writer_guid())});
+                .writer = writer});
     }
+  }
+  bool isAdmitted(const Guid& writer) {
+    if (!admission || admitted.contains(writer)) return true;
+    if (!admission(writer)) return false;
+    admitted.insert(writer);
+    return true;
   }
   void on_subscription_matched(DataReader*, const SubscriptionMatchedStatus& status) override {
     matches.change(status.last_publication_handle, status.current_count_change);
@@ -178,6 +193,9 @@ struct RawReader::Impl final : DataReaderListener {
   Participant& participant;
   Callback callback;
   MatchCallback on_match;
+  Admission admission;
+  std::set<Guid> admitted;  // of the thread that takes samples
+  std::atomic<std::uint64_t> refused{0};
   Matches matches;
   RawType::Incoming incoming;  // reused: taking a sample allocates only when one is larger than all before
   std::atomic<std::uint64_t> lost{0};
@@ -185,10 +203,12 @@ struct RawReader::Impl final : DataReaderListener {
 };
 
 RawReader::RawReader(Participant& participant, const EndpointOptions& options, Callback callback,
-                     MatchCallback on_match)
-    : impl_(std::make_unique<Impl>(participant, options, std::move(callback), std::move(on_match))) {}
+                     MatchCallback on_match, Admission admission)
+    : impl_(std::make_unique<Impl>(participant, options, std::move(callback), std::move(on_match),
+                                   std::move(admission))) {}
 RawReader::~RawReader() = default;
 std::set<GuidPrefix> RawReader::matched() const { return impl_->matches.prefixes(); }
+std::uint64_t RawReader::refused() const { return impl_->refused; }
 std::uint64_t RawReader::lost() const { return impl_->lost; }
 
 }  // namespace baton::dds

@@ -36,6 +36,8 @@ struct EndpointOptions {
 
 /// Called when a counterpart is matched or lost, on a DDS thread.
 using MatchCallback = std::function<void()>;
+/// Whether samples of this writer are wanted; asked for each sample until the answer is yes.
+using Admission = std::function<bool(const Guid& writer)>;
 
 class RawWriter {
  public:
@@ -66,12 +68,15 @@ class RawReader {
   using Callback = std::function<void(const RawSample&)>;
 
   /// The callback runs on a DDS thread, once a sample, in order of arrival.
-  RawReader(Participant& participant, const EndpointOptions& options, Callback callback, MatchCallback on_match = {});
+  RawReader(Participant& participant, const EndpointOptions& options, Callback callback, MatchCallback on_match = {},
+            Admission admission = {});
   ~RawReader();
   RawReader(const RawReader&) = delete;
   RawReader& operator=(const RawReader&) = delete;
 
   [[nodiscard]] std::set<GuidPrefix> matched() const;
+  /// Samples of writers that were not admitted.
+  [[nodiscard]] std::uint64_t refused() const;
   /// Samples the middleware itself knows it could not deliver.
   [[nodiscard]] std::uint64_t lost() const;
 

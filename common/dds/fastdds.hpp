@@ -132,6 +132,29 @@ inline void deliverThroughTheTransport() {
 #endif
 }
 
+/// Creates a participant whose GUID prefix is what `name` makes of the one that the product chose. Returns nullptr when
+/// the product refuses.
+inline dds::DomainParticipant* createParticipant(int domain, dds::DomainParticipantQos qos,
+                                                 dds::DomainParticipantListener* listener,
+                                                 const std::function<void(rtps::GuidPrefix_t&)>& name) {
+  // A participant that is not enabled yet has a prefix and can be given another.
+  auto* const factory = dds::DomainParticipantFactory::get_instance();
+  dds::DomainParticipantFactoryQos factory_qos;
+  factory->get_qos(factory_qos);
+  factory_qos.entity_factory().autoenable_created_entities = false;
+  factory->set_qos(factory_qos);
+  auto* const participant =
+      factory->create_participant(static_cast<std::uint32_t>(domain), qos, listener, dds::StatusMask::none());
+  if (participant == nullptr) return nullptr;
+  const rtps::GuidPrefix_t chosen = participant->guid().guidPrefix;
+  rtps::GuidPrefix_t prefix = chosen;
+  name(prefix);
+  if (prefix != chosen) qos.wire_protocol().prefix = prefix;
+  if (isDone(participant->set_qos(qos)) && isDone(participant->enable())) return participant;
+  factory->delete_participant(participant);
+  return nullptr;
+}
+
 /// What discovery tells of a participant.
 struct ParticipantData {
   rtps::GUID_t guid;

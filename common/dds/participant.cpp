@@ -21,7 +21,8 @@ namespace rtps = fastdds::rtps;
 namespace transport = fastdds::transport;
 
 constexpr int kMaxDomain = 232;
-constexpr int kSocketBuffer = 4 << 20;  // loopback UDP loses datagrams when a busy receiver's buffer is full
+constexpr std::size_t kMaxKnown = 10'000;    // of peers, and of strangers: a flood of them must not fill the memory
+constexpr int kSocketBuffer = 4 << 20;       // loopback UDP loses datagrams when a busy receiver's buffer is full
 
 // Discovery data of a Baton process: one field a line.
 std::string encodePeer(const Peer& peer) {
@@ -111,11 +112,12 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
   }
 
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
-  // Announcing often lets late joiners match within 200 ms. The lease outlives a process that is stopped for a while
-  // and then goes on; processes that end are noticed by whoever launched them, not by DDS. It is as long as this for
-  // another reason: a lease that is looked at while its participant leaves ends the process (an assertion in Fast DDS
-  // 2.9.1), and the looks come a lease apart.
-  discovery.leaseDuration_announcementperiod = {0, 100'000'000};
+  // Whoever is discovered is answered at once; repeating it is for datagrams that were lost. Each participant tells every
+  // other, so the price grows with the square of their number: announce() is for who still looks for somebody. The lease
+  // outlives a process that is stopped for a while and then goes on; processes that end are noticed by whoever launched
+  // them, not by DDS. It is as long as this for another reason: a lease that is looked at while its participant leaves
+  // ends the process (an assertion in Fast DDS 2.9.1), and the looks come a lease apart.
+  discovery.leaseDuration_announcementperiod = {3, 0};
   discovery.leaseDuration = {3600, 0};
   discovery.initial_announcements.count = 5;
   discovery.initial_announcements.period = {0, 20'000'000};
@@ -137,7 +139,8 @@ Guid toGuid(const rtps::GUID_t& guid) {
   return result;
 }
 
-Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_in) : on_peer(std::move(on_peer_in)) {
+Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_in)
+    : on_peer(std::move(on_peer_in)), key(options.key) {
   if (options.domain < 0 || options.domain > kMaxDomain) {
     throw UsageError("DDS domain: expected 0 to 232, found " + std::to_string(options.domain));
   }
@@ -146,8 +149,14 @@ Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_
           .run = options.run,
           .service = options.service,
           .started_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(since_epoch).count()};
-  participant = DomainParticipantFactory::get_instance()->create_participant(
-      options.domain, participantQos(options, self), this, StatusMask::none());
+  participant = fastdds::createParticipant(options.domain, participantQos(options, self), this,
+                                           [this](rtps::GuidPrefix_t& prefix) {
+                                             if (!key) return;
+                                             GuidPrefix marked{};
+                                             std::copy_n(prefix.value, marked.size(), marked.begin());
+                                             marked = key->marked(marked);
+                                             std::ranges::copy(marked, prefix.value);
+                                           });
   if (participant == nullptr) refuse("a participant in domain " + std::to_string(options.domain));
   self.prefix = toPrefix(participant->guid());
   PublisherQos publisher_qos = participant->get_default_publisher_qos();
@@ -170,15 +179,19 @@ Participant::Impl::~Impl() {
 void Participant::Impl::onParticipantGone(const rtps::GUID_t& guid) {
   const std::lock_guard lock(mutex);
   peers.erase(toPrefix(guid));
+  strangers.erase(toPrefix(guid));
 }
 
 void Participant::Impl::onParticipant(const fastdds::ParticipantData& data) {
   const GuidPrefix prefix = toPrefix(data.guid);
-  const std::optional<Peer> peer = decodePeer({data.user_data.begin(), data.user_data.end()}, prefix);
+  std::optional<Peer> peer = decodePeer({data.user_data.begin(), data.user_data.end()}, prefix);
   if (!peer) return;
+  peer->is_stranger = key && peer->cell == self.cell && peer->run == self.run && !key->isMarked(prefix);
   {
     const std::lock_guard lock(mutex);
-    peers[prefix] = *peer;
+    auto& known = peer->is_stranger ? strangers : peers;
+    if (const auto found = known.find(prefix); found != known.end() && found->second == *peer) return;  // said again
+    if (known.size() < kMaxKnown) known[prefix] = *peer;
   }
   if (on_peer) on_peer(*peer);
 }
@@ -239,6 +252,16 @@ std::optional<Peer> Participant::peer(const GuidPrefix& prefix) const {
   return found == impl_->peers.end() ? std::nullopt : std::optional(found->second);
 }
 
+std::optional<Peer> Participant::stranger(const GuidPrefix& prefix) const {
+  const std::lock_guard lock(impl_->mutex);
+  const auto found = impl_->strangers.find(prefix);
+  return found == impl_->strangers.end() ? std::nullopt : std::optional(found->second);
+}
+
+bool Participant::hasKey() const { return impl_->key.has_value(); }
+
+bool Participant::isMember(const GuidPrefix& prefix) const { return !impl_->key || impl_->key->isMarked(prefix); }
+
 std::vector<Peer> Participant::peers() const {
   const std::lock_guard lock(impl_->mutex);
   std::vector<Peer> result;
@@ -258,6 +281,14 @@ bool Participant::isSecondCopy(const Guid& writer) const {
 }
 
 const Peer& Participant::self() const { return impl_->self; }
+
+void Participant::announce() {
+  // A change of its data makes a participant tell everybody. Behind the fields nothing is read.
+  const std::string data = encodePeer(impl_->self) + "\n" + std::to_string(++impl_->announcements);
+  DomainParticipantQos qos = impl_->participant->get_qos();
+  qos.user_data().data_vec({data.begin(), data.end()});
+  impl_->participant->set_qos(qos);
+}
 
 bool isElder(const Peer& a, const Peer& b) {
   return std::tie(a.started_ns, a.prefix) < std::tie(b.started_ns, b.prefix);

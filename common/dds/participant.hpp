@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dds/run_key.hpp"
 #include "dds/types.hpp"
 
 namespace baton::dds {
@@ -20,6 +21,7 @@ struct ParticipantOptions {
   std::string run;      // the run within the cell; what is left over from another run is told apart by this
   std::string service;  // name of the service, unique in the run
   Transport transport = Transport::kUdp;
+  std::optional<RunKey> key{};  // of the run; without one, everybody is taken for who they say they are
 };
 
 /// A process of Baton in the domain, as its discovery data tell.
@@ -29,6 +31,8 @@ struct Peer {
   std::string service;
   std::int64_t started_ns = 0;  // since the epoch, by its own clock
   GuidPrefix prefix{};
+  bool is_stranger = false;  // claims to be of our run, and does not have its key
+  bool operator==(const Peer&) const = default;
 };
 /// The same answer in every process that asks. Clocks of different hosts must agree better than people start things.
 [[nodiscard]] bool isElder(const Peer& a, const Peer& b);
@@ -54,21 +58,28 @@ using WriterCallback = std::function<void(const DiscoveredWriter&)>;
 /// before it.
 class Participant {
  public:
-  /// @param on_peer  called for every Baton process that joins.
+  /// @param on_peer  called for every Baton process that joins, strangers too.
   /// Throws UsageError for a domain outside 0 to 232 and UnavailableError when DDS refuses.
   explicit Participant(const ParticipantOptions& options, PeerCallback on_peer = {});
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
-  /// The Baton process behind a GUID prefix, if discovery has told.
+  /// The Baton process that has this GUID prefix, if discovery has told. Strangers are none.
   [[nodiscard]] std::optional<Peer> peer(const GuidPrefix& prefix) const;
   [[nodiscard]] std::vector<Peer> peers() const;
+  /// What a stranger calls itself, if discovery has told.
+  [[nodiscard]] std::optional<Peer> stranger(const GuidPrefix& prefix) const;
+  [[nodiscard]] bool hasKey() const;
+  /// Whether it has our run's key. Everybody has, where we have none.
+  [[nodiscard]] bool isMember(const GuidPrefix& prefix) const;
   /// Whether a sample comes from a second copy of a service that has not given way yet. Not for services that may be
   /// started again: a process that was killed is remembered for the length of its lease.
   [[nodiscard]] bool isSecondCopy(const Guid& writer) const;
   /// This process as others see it.
   [[nodiscard]] const Peer& self() const;
+  /// Tells everybody once more that it is there: a datagram may have been lost. One thread at a time.
+  void announce();
 
   /// Calls back for every writer of somebody else in the domain, those known already first, until another callback or
   /// an empty one takes its place: no call is under way any more when this returns. Not to be called from a callback.

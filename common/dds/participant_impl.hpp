@@ -23,12 +23,15 @@ struct Participant::Impl final : fastdds::DiscoveryListener {
   fastdds::dds::Topic* topic(const std::string& name, const std::string& type, std::uint32_t max_payload, bool keyed);
 
   PeerCallback on_peer;
+  std::optional<RunKey> key;
   Peer self;
+  std::uint64_t announcements = 0;
   fastdds::dds::DomainParticipant* participant = nullptr;
   fastdds::dds::Publisher* publisher = nullptr;
   fastdds::dds::Subscriber* subscriber = nullptr;
   mutable std::mutex mutex;  // guards what follows; discovery runs on a DDS thread
   std::map<GuidPrefix, Peer> peers;
+  std::map<GuidPrefix, Peer> strangers;  // some of them
   std::map<Guid, DiscoveredWriter> writers;
   std::mutex watch_mutex;  // held while on_writer is called, so that it can be taken away; never taken after `mutex`
   WriterCallback on_writer;

@@ -25,10 +25,14 @@ namespace baton::dds {
 /// for the recorder, as controllers do with `checkpoint` and `decision`.
 enum class RecordedFrom { kNobody, kPlant, kTrajectory, kEnvironment, kControllers, kServices };
 
+/// Whose words count there. Operators' topics are everybody's: what the supervisor asks, too.
+enum class WrittenBy { kPlant, kEnvironment, kTrajectory, kControllers, kServices, kOperators };
+
 struct TopicFacts {
   const char* name;
   const char* type;
   Profile profile;
+  WrittenBy written_by;
   RecordedFrom recorded_from;
 };
 
@@ -36,53 +40,54 @@ struct TopicFacts {
 template <class T>
 struct Topic : TopicFacts {};
 
-// TOPIC(constant, name, type, profile, recorded from the first sample on)
+// TOPIC(constant, name, type, profile, written by, recorded from the first sample on)
 // clang-format off
 #define BATON_TOPICS(TOPIC) \
-  TOPIC(kPlantState,       "plant_state",        PlantState,       kLoop,    kPlant)       \
-  TOPIC(kPlantStateAgain,  "plant_state_again",  PlantState,       kLoop,    kNobody)      \
-  TOPIC(kContact,          "contact",            Contact,          kLoop,    kEnvironment) \
-  TOPIC(kReference,        "reference",          Reference,        kLoop,    kTrajectory)  \
-  TOPIC(kJointCommand,     "joint_command",      JointCommand,     kLoop,    kControllers) \
-  TOPIC(kShadowCommand,    "shadow_command",     JointCommand,     kLoop,    kControllers) \
-  TOPIC(kCheckpoint,       "checkpoint",         Checkpoint,       kLoop,    kPlant)       \
-  TOPIC(kSimRequest,       "sim_request",        SimRequest,       kRequest, kNobody)      \
-  TOPIC(kSimReply,         "sim_reply",          SimReply,         kRequest, kNobody)      \
-  TOPIC(kSimStatus,        "sim_status",         SimStatus,        kStatus,  kNobody)      \
-  TOPIC(kRewind,           "rewind",             Rewind,           kLoop,    kPlant)       \
-  TOPIC(kRewindAck,        "rewind_ack",         RewindAck,        kLoop,    kNobody)      \
-  TOPIC(kTimingStatus,     "timing_status",      TimingStatus,     kStatus,  kNobody)      \
-  TOPIC(kSwapRequest,      "swap_request",       SwapRequest,      kRequest, kNobody)      \
-  TOPIC(kSwapPlan,         "swap_plan",          SwapPlan,         kEvent,   kPlant)       \
-  TOPIC(kSwapAck,          "swap_ack",           SwapAck,          kEvent,   kControllers) \
-  TOPIC(kSwapOutcome,      "swap_outcome",       SwapOutcome,      kEvent,   kPlant)       \
-  TOPIC(kSwapReport,       "swap_report",        SwapReport,       kEvent,   kPlant)       \
-  TOPIC(kBatonStatus,      "baton_status",       BatonStatus,      kStatus,  kNobody)      \
-  TOPIC(kControllerStatus, "controller_status",  ControllerStatus, kStatus,  kNobody)      \
-  TOPIC(kParameterStatus,  "parameter_status",   ParameterStatus,  kStatus,  kNobody)      \
-  TOPIC(kParameterRequest, "parameter_request",  ParameterRequest, kRequest, kNobody)      \
-  TOPIC(kParameterReply,   "parameter_reply",    ParameterReply,   kEvent,   kNobody)      \
-  TOPIC(kDecision,         "decision",           Decision,         kEvent,   kPlant)       \
-  TOPIC(kLaunchRequest,    "launch_request",     LaunchRequest,    kRequest, kNobody)      \
-  TOPIC(kLaunchReply,      "launch_reply",       LaunchReply,      kEvent,   kNobody)      \
-  TOPIC(kServiceStatus,    "service_status",     ServiceStatus,    kStatus,  kNobody)      \
-  TOPIC(kServiceManifest,  "service_manifest",   ServiceManifest,  kEvent,   kServices)    \
-  TOPIC(kEvent,            "event",              Event,            kEvent,   kServices)    \
-  TOPIC(kRecorderStatus,   "recorder_status",    RecorderStatus,   kStatus,  kNobody)      \
-  TOPIC(kRecordRequest,    "record_request",     RecordRequest,    kRequest, kNobody)      \
-  TOPIC(kRecordReply,      "record_reply",       RecordReply,      kRequest, kNobody)      \
-  TOPIC(kReplayStatus,     "replay_status",      ReplayStatus,     kStatus,  kNobody)      \
-  TOPIC(kReplayRequest,    "replay_request",     ReplayRequest,    kRequest, kNobody)      \
-  TOPIC(kReplayReply,      "replay_reply",       ReplayReply,      kRequest, kNobody)
+  TOPIC(kPlantState,       "plant_state",        PlantState,       kLoop,    kPlant,       kPlant)       \
+  TOPIC(kPlantStateAgain,  "plant_state_again",  PlantState,       kLoop,    kPlant,       kNobody)      \
+  TOPIC(kContact,          "contact",            Contact,          kLoop,    kEnvironment, kEnvironment) \
+  TOPIC(kReference,        "reference",          Reference,        kLoop,    kTrajectory,  kTrajectory)  \
+  TOPIC(kJointCommand,     "joint_command",      JointCommand,     kLoop,    kControllers, kControllers) \
+  TOPIC(kShadowCommand,    "shadow_command",     JointCommand,     kLoop,    kControllers, kControllers) \
+  TOPIC(kCheckpoint,       "checkpoint",         Checkpoint,       kLoop,    kServices,    kPlant)       \
+  TOPIC(kSimRequest,       "sim_request",        SimRequest,       kRequest, kOperators,   kNobody)      \
+  TOPIC(kSimReply,         "sim_reply",          SimReply,         kRequest, kPlant,       kNobody)      \
+  TOPIC(kSimStatus,        "sim_status",         SimStatus,        kStatus,  kPlant,       kNobody)      \
+  TOPIC(kRewind,           "rewind",             Rewind,           kLoop,    kPlant,       kPlant)       \
+  TOPIC(kRewindAck,        "rewind_ack",         RewindAck,        kLoop,    kServices,    kNobody)      \
+  TOPIC(kTimingStatus,     "timing_status",      TimingStatus,     kStatus,  kPlant,       kNobody)      \
+  TOPIC(kSwapRequest,      "swap_request",       SwapRequest,      kRequest, kOperators,   kNobody)      \
+  TOPIC(kSwapPlan,         "swap_plan",          SwapPlan,         kEvent,   kPlant,       kPlant)       \
+  TOPIC(kSwapAck,          "swap_ack",           SwapAck,          kEvent,   kControllers, kControllers) \
+  TOPIC(kSwapOutcome,      "swap_outcome",       SwapOutcome,      kEvent,   kPlant,       kPlant)       \
+  TOPIC(kSwapReport,       "swap_report",        SwapReport,       kEvent,   kPlant,       kPlant)       \
+  TOPIC(kBatonStatus,      "baton_status",       BatonStatus,      kStatus,  kPlant,       kNobody)      \
+  TOPIC(kControllerStatus, "controller_status",  ControllerStatus, kStatus,  kControllers, kNobody)      \
+  TOPIC(kParameterStatus,  "parameter_status",   ParameterStatus,  kStatus,  kControllers, kNobody)      \
+  TOPIC(kParameterRequest, "parameter_request",  ParameterRequest, kRequest, kOperators,   kNobody)      \
+  TOPIC(kParameterReply,   "parameter_reply",    ParameterReply,   kEvent,   kControllers, kNobody)      \
+  TOPIC(kDecision,         "decision",           Decision,         kEvent,   kServices,    kPlant)       \
+  TOPIC(kLaunchRequest,    "launch_request",     LaunchRequest,    kRequest, kOperators,   kNobody)      \
+  TOPIC(kLaunchReply,      "launch_reply",       LaunchReply,      kEvent,   kServices,    kNobody)      \
+  TOPIC(kServiceStatus,    "service_status",     ServiceStatus,    kStatus,  kServices,    kNobody)      \
+  TOPIC(kServiceManifest,  "service_manifest",   ServiceManifest,  kEvent,   kServices,    kServices)    \
+  TOPIC(kEvent,            "event",              Event,            kEvent,   kServices,    kServices)    \
+  TOPIC(kRecorderStatus,   "recorder_status",    RecorderStatus,   kStatus,  kServices,    kNobody)      \
+  TOPIC(kRecordRequest,    "record_request",     RecordRequest,    kRequest, kOperators,   kNobody)      \
+  TOPIC(kRecordReply,      "record_reply",       RecordReply,      kRequest, kServices,    kNobody)      \
+  TOPIC(kReplayStatus,     "replay_status",      ReplayStatus,     kStatus,  kServices,    kNobody)      \
+  TOPIC(kReplayRequest,    "replay_request",     ReplayRequest,    kRequest, kOperators,   kNobody)      \
+  TOPIC(kReplayReply,      "replay_reply",       ReplayReply,      kRequest, kServices,    kNobody)
 // clang-format on
 
 namespace topics {
-#define BATON_TOPIC_CONSTANT(constant, name, type, profile, from) \
-  inline constexpr Topic<msg::type> constant{{name, "baton::msg::" #type, Profile::profile, RecordedFrom::from}};
+#define BATON_TOPIC_CONSTANT(constant, name, type, profile, by, from) \
+  inline constexpr Topic<msg::type> constant{                         \
+      {name, "baton::msg::" #type, Profile::profile, WrittenBy::by, RecordedFrom::from}};
 BATON_TOPICS(BATON_TOPIC_CONSTANT)
 #undef BATON_TOPIC_CONSTANT
 
-#define BATON_TOPIC_FACTS(constant, name, type, profile, from) static_cast<const TopicFacts&>(constant),
+#define BATON_TOPIC_FACTS(constant, name, type, profile, by, from) static_cast<const TopicFacts&>(constant),
 inline constexpr std::array kAll{BATON_TOPICS(BATON_TOPIC_FACTS)};
 #undef BATON_TOPIC_FACTS
 static_assert(std::ranges::all_of(kAll,

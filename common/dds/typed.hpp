@@ -65,7 +65,8 @@ class Reader {
  public:
   using Callback = std::function<void(const T&, const RawSample&)>;
 
-  Reader(Participant& participant, const Topic<T>& topic, Callback callback, MatchCallback on_match = {})
+  Reader(Participant& participant, const Topic<T>& topic, Callback callback, MatchCallback on_match = {},
+         Admission admission = {})
       : callback_(std::move(callback)),
         raw_(
             participant, endpointOptions(topic),
@@ -76,7 +77,7 @@ class Reader {
                 ++rejected_;
               }
             },
-            std::move(on_match)) {}
+            std::move(on_match), std::move(admission)) {}
 
   /// Samples that were not a message of this type.
   [[nodiscard]] std::uint64_t rejected() const { return rejected_; }

@@ -11,15 +11,24 @@ GuidPrefix prefixOf(const Guid& guid) {
   return prefix;
 }
 
-std::string toString(const Guid& guid) {
+namespace {
+std::string digitsOf(std::span<const std::uint8_t> bytes) {
   constexpr const char* kDigits = "0123456789abcdef";
   std::string text;
-  for (std::size_t i = 0; i < guid.bytes.size(); ++i) {
-    if (i == std::tuple_size_v<GuidPrefix>) text += '.';
-    text += kDigits[guid.bytes[i] >> 4];
-    text += kDigits[guid.bytes[i] & 0xF];
+  for (const std::uint8_t byte : bytes) {
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 0xF];
   }
   return text;
+}
+}  // namespace
+
+std::string toString(const GuidPrefix& prefix) { return digitsOf(prefix); }
+
+std::string toString(const Guid& guid) {
+  const std::span<const std::uint8_t> bytes(guid.bytes);
+  constexpr std::size_t kPrefix = std::tuple_size_v<GuidPrefix>;
+  return digitsOf(bytes.first(kPrefix)) + "." + digitsOf(bytes.subspan(kPrefix));
 }
 
 std::optional<Guid> guidCalled(std::string_view text) {

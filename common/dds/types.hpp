@@ -22,6 +22,8 @@ struct Guid {
 using GuidPrefix = std::array<std::uint8_t, 12>;
 [[nodiscard]] GuidPrefix prefixOf(const Guid& guid);
 
+/// "0123456789abcdef01234567".
+[[nodiscard]] std::string toString(const GuidPrefix& prefix);
 /// "0123456789abcdef01234567.00000103", as DDS tools print it.
 [[nodiscard]] std::string toString(const Guid& guid);
 /// Back from that; nothing for another text.

@@ -18,7 +18,7 @@ namespace {
 
 fs::path cellsFolder() {
   fs::path folder = stateFolder() / "cells";
-  fs::create_directories(folder);
+  makeFolder(folder);
   return folder;
 }
 
@@ -114,6 +114,51 @@ std::vector<RunInfo> activeRuns() {
   return runs;
 }
 
+std::string keyFile(const RunInfo& info) { return info.folder + "/key"; }
+
+void makeKeyWhenMissing(const RunInfo& info) {
+  const std::string file = keyFile(info), text = dds::RunKey::fresh().text() + "\n";
+  if (fs::exists(file)) return;
+  const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  const bool is_written =
+      descriptor >= 0 && write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  const int error = errno;
+  if (descriptor >= 0) close(descriptor);
+  if (!is_written) throw UnavailableError("cannot write the run's key, " + file + ": " + std::strerror(error));
+}
+
+dds::RunKey readKey(const std::string& file) {
+  const std::string text = readFile(file);
+  const auto key = dds::RunKey::parse(std::string_view(text).substr(0, text.find('\n')));
+  if (!key) throw UnavailableError(file + ": expected the key of a run, 64 hexadecimal digits");
+  return *key;
+}
+
+std::optional<dds::RunKey> keyOf(const RunInfo& info) {
+  const std::string file = keyFile(info);
+  return fs::exists(file) ? std::optional(readKey(file)) : std::nullopt;
+}
+
+namespace {
+fs::path signpost(const fs::path& run_folder, const std::string& name) { return run_folder / "elsewhere" / name; }
+}  // namespace
+
+void sendElsewhere(const RunInfo& info, const fs::path& path) {
+  const fs::path file = signpost(info.folder, path.filename().string());
+  makeFolder(file.parent_path());
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream << path.parent_path().string();
+  stream.close();
+  if (!stream)
+    throw UnavailableError("cannot write " + file.string() + ": expected space and the right to write there");
+}
+
+fs::path placeOf(const fs::path& key_file, const fs::path& folder, const std::string& name) {
+  const fs::path file = signpost(key_file.parent_path(), name);
+  const bool is_elsewhere = !key_file.empty() && fs::exists(file);
+  return (is_elsewhere ? fs::path(readFile(file)) : folder) / name;
+}
+
 std::string keptScenario(const RunInfo& info) { return info.folder + "/scenario.yaml"; }
 std::string keptRobot(const RunInfo& info) { return info.folder + "/robot.yaml"; }
 
@@ -133,9 +178,10 @@ void keepExperiment(const RunInfo& info, const Scenario& scenario) {
 
 fs::path runFolder(const std::string& run) {
   fs::path folder = stateFolder() / "runs" / run;
+  makeFolder(folder);
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw UnavailableError("cannot make " + folder.string() + ": " + error.message());
+  fs::permissions(folder, fs::perms::owner_all, error);
+  if (error) throw UnavailableError("cannot make " + folder.string() + " private: " + error.message());
   return folder;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dds/run_key.hpp"
 #include "dds/types.hpp"
 #include "runtime/scenario.hpp"
 
@@ -47,6 +48,21 @@ class CellLock {
 
 /// The folder of a run; created when missing.
 [[nodiscard]] std::filesystem::path runFolder(const std::string& run);
+
+/// The key of a run, a file in its folder that only its owner can read: whoever can may operate the run. Throws
+/// UnavailableError when it cannot be written or read.
+[[nodiscard]] std::string keyFile(const RunInfo& info);
+void makeKeyWhenMissing(const RunInfo& info);
+[[nodiscard]] dds::RunKey readKey(const std::string& file);
+/// Of an operator: without a key where there is none.
+[[nodiscard]] std::optional<dds::RunKey> keyOf(const RunInfo& info);
+
+/// Where a recording that is asked for goes. Over the wire comes only a name; that it leads into another folder than
+/// that of the run's recording is said in the run's own folder, where only the run's owner writes.
+void sendElsewhere(const RunInfo& info, const std::filesystem::path& path);
+/// @param folder  of the run's recording.
+[[nodiscard]] std::filesystem::path placeOf(const std::filesystem::path& key_file, const std::filesystem::path& folder,
+                                            const std::string& name);
 
 /// The run keeps the experiment as it was, whatever becomes of the files: its services and the commands that speak to
 /// it read the copies in its folder. Throws UnavailableError when they cannot be written.

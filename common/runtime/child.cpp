@@ -1,6 +1,7 @@
 #include "runtime/child.hpp"
 
 #include <fcntl.h>
+#include <linux/close_range.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -43,6 +44,8 @@ struct ChildSetup : process::extend::handler {
         dup2(log, STDERR_FILENO) < 0) {
       executor.set_error(process::extend::get_last_error(), "standard streams");
     }
+    // What else is open here, DDS's sockets among it, is not the child's.
+    ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   }
 };
 

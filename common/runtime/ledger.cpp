@@ -8,6 +8,7 @@
 #include "dds/hash.hpp"
 #include "dds/topics.hpp"
 #include "runtime/json.hpp"
+#include "runtime/service_options.hpp"
 
 namespace baton {
 
@@ -66,9 +67,10 @@ bool Ledger::hasManifestOf(const std::string& service) const {
                      [&](const msg::ServiceManifest& manifest) { return service == manifest.name().c_str(); });
 }
 
-std::size_t Ledger::services() const {
+std::size_t Ledger::servicesHeard() const {
   std::set<std::string> names;
   for (const msg::ServiceManifest& manifest : manifests_) names.insert(manifest.name().c_str());
+  names.erase(kSecondCopyName);
   return names.size();
 }
 

@@ -67,12 +67,14 @@ class Ledger {
 
   /// Another service has joined, of whom a manifest is to be expected.
   void expect(const std::string& service) { services_.insert(service); }
+  [[nodiscard]] bool expects(const std::string& service) const { return services_.contains(service); }
   /// The service has failed: its manifest will not come.
   void giveUpOn(const std::string& service) { given_up_.insert(service); }
   /// Nothing more is to be expected: every manifest that still can come has, and every stream they name is here, whole.
   [[nodiscard]] bool isSettled() const;
   /// Whether every writer of what the services count has a manifest; that of one that nobody waits for may still come.
   [[nodiscard]] bool isVouchedFor() const { return unvouched(vouchedFor()).empty(); }
+  [[nodiscard]] bool isVouchedFor(const Key& stream) const { return vouchedFor().contains(stream); }
   /// Every service has sent its manifest, every stream is vouched for by one, and is here, whole.
   [[nodiscard]] bool isComplete() const { return problems().empty(); }
   /// One sentence for each thing that is missing.
@@ -93,8 +95,8 @@ class Ledger {
   [[nodiscard]] const std::map<Key, ReceivedStream>& streams() const { return streams_; }
   [[nodiscard]] const std::vector<Gap>& gaps() const { return gaps_; }
   [[nodiscard]] const std::set<std::string>& leftOut() const { return left_out_; }
-  /// How many services have sent a manifest, each counted once, however many of its processes did.
-  [[nodiscard]] std::size_t services() const;
+  /// How many services have sent a manifest: each once, however many of its processes did.
+  [[nodiscard]] std::size_t servicesHeard() const;
   /// Samples that never came, on topics of which none may be missing: of a status only the latest word counts.
   [[nodiscard]] std::uint64_t missing() const;
 

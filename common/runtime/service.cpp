@@ -38,7 +38,9 @@ Service::Service(ServiceOptions options, Scenario scenario)
       scenario_(std::move(scenario)),
       // A peer's discovery data may come after its endpoints are matched.
       participant_(options_.participant(),
-                   [this](const dds::Peer& peer) { asio::post(executor_, [this, peer] { peerJoined(peer); }); }) {
+                   [this](const dds::Peer& peer) { asio::post(executor_, [this, peer] { peerJoined(peer); }); }),
+      admission_(participant_, options_.is_open,
+                 [this](const std::string& text) { event(msg::SEVERITY_WARNING, "stranger", text); }) {
   for (const Fault& fault : scenario_.faults) {
     if (fault.service == options_.name && isOfProcess(fault.kind)) process_faults_.push_back(fault);
   }
@@ -98,10 +100,11 @@ bool Service::isRival(const dds::Peer& peer) const {
 }
 
 /// Another one of us: the same run's second copy of a service, or the plant of another run in the cell. The younger
-/// gives way, so that a run that has started is left alone.
+/// gives way. How old the plant of another run is, is its own word: a run that has begun does not believe it.
 void Service::giveWayToElders() {
   for (const dds::Peer& peer : participant_.peers()) {
     if (!isRival(peer) || !isElder(peer, participant_.self())) continue;
+    if (ready_ && peer.run != options_.run) continue;
     return giveWay(peer.run == options_.run ? "run " + peer.run + " has its " + peer.service + " already"
                                             : "cell " + peer.cell + " has a plant of run " + peer.run +
                                                   " already: end that run or choose another --cell");
@@ -109,6 +112,7 @@ void Service::giveWayToElders() {
 }
 
 void Service::peerJoined(const dds::Peer& peer) {
+  if (peer.is_stranger) return admission_.met(peer);
   checkBarrier();
   if (!gave_way_ && isRival(peer)) {
     event(msg::SEVERITY_WARNING, "intruder", "a second " + peer.service + " of run " + peer.run + "; this one goes on");
@@ -127,6 +131,17 @@ void Service::giveWay(const std::string& why) {
 
 void Service::matchesChanged() {
   asio::post(executor_, [this] { checkBarrier(); });
+}
+
+/// Somebody it waits for may not have heard of it. Ever more seldom: many that start together must not drown each
+/// other.
+void Service::announceUntilReady(std::chrono::milliseconds pause) {
+  announcement_.expires_after(pause);
+  announcement_.async_wait([this, pause](const boost::system::error_code& error) {
+    if (error || ready_ || gave_way_) return;
+    participant_.announce();
+    announceUntilReady(std::min<std::chrono::milliseconds>(2 * pause, std::chrono::seconds(4)));
+  });
 }
 
 void Service::checkBarrier() {
@@ -229,6 +244,18 @@ void Service::runEnded(std::uint64_t step, bool clean) {
   });
 }
 
+std::string lossText(const std::string& topic, std::uint64_t lost, std::uint64_t unreadable,
+                     std::uint64_t of_strangers) {
+  std::string text;
+  const auto add = [&text](std::uint64_t count, const char* what) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + what;
+  };
+  add(lost, " samples lost on the way");
+  add(unreadable, " that could not be read");
+  add(of_strangers, " of strangers, not heard");
+  return text.empty() ? text : topic + ": " + text;
+}
+
 void Service::tellLosses() {
   for (const auto& loss : losses_) {
     if (const std::string text = loss(); !text.empty()) spdlog::warn("{}", text);
@@ -237,16 +264,19 @@ void Service::tellLosses() {
 
 void Service::publishManifest() {
   const std::lock_guard lock(mutex_);
+  sayManifest();
+}
+
+void Service::sayManifest() {
   if (manifest_out_) return;
   manifest_out_ = true;
   tellLosses();
   msg::ServiceManifest message;
-  message.name(options_.name);
+  message.name(gave_way_ ? kSecondCopyName : options_.name);
   for (const auto& manifest : manifests_) {
     const msg::StreamManifest stream = manifest();
     if (stream.count() > 0) message.streams().push_back(stream);
   }
-  // Who gave way before it sent anything has nothing to add, and the other one's manifest is still to come.
   if (!gave_way_ || !message.streams().empty()) manifest_->write(message);
   if (on_end_) asio::post(executor_, on_end_);
 }
@@ -288,7 +318,11 @@ void Service::awaitSignal() {
 
 /// In the middle of a run too what was sent is vouched for.
 void Service::leave() {
-  publishManifest();
+  {
+    const std::lock_guard lock(mutex_);
+    sayManifest();
+    is_closed_ = true;  // what came of another input would not be in it
+  }
   using Clock = std::chrono::steady_clock;
   const Clock::time_point limit = Clock::now() + std::chrono::seconds(1);
   for (dds::RawWriter* const writer : last_words_) {
@@ -302,6 +336,7 @@ void Service::leave() {
 ExitCode Service::run() {
   awaitSignal();
   matchesChanged();
+  announceUntilReady(std::chrono::milliseconds(200));
   executor_.run();
   const std::lock_guard lock(mutex_);
   is_closed_ = true;

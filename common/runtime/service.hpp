@@ -26,6 +26,7 @@
 #include "dds/participant.hpp"
 #include "dds/typed.hpp"
 #include "messages/loop.hpp"
+#include "runtime/admission.hpp"
 #include "runtime/barrier.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/service_options.hpp"
@@ -114,6 +115,8 @@ class Service {
   /// Ends run() because another process has this one's place; what was sent until then stands in a manifest, as when it
   /// leaves on a signal. Any thread.
   void giveWay(const std::string& why);
+  /// Who is heard on which topic; any thread.
+  [[nodiscard]] Admission& admission() { return admission_; }
   /// Matched with everybody it needs; any thread.
   [[nodiscard]] bool isReady() const { return ready_; }
   /// Who is missing for that, by topic; any thread, once all endpoints are declared.
@@ -130,7 +133,9 @@ class Service {
   void tellLosses();
   void strikeWhenReached(std::uint64_t step);
   void checkBarrier();
+  void announceUntilReady(std::chrono::milliseconds pause);
   void publishManifest();
+  void sayManifest();
   void onRewindMessage(const msg::Rewind& rewind);
   void publishStatus(msg::ServiceState state, const std::string& text);
   void addToManifest(dds::Profile profile, std::function<msg::StreamManifest()> manifest);
@@ -142,8 +147,10 @@ class Service {
   boost::asio::signal_set signals_{executor_, SIGINT, SIGTERM};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{executor_.get_executor()};
   boost::asio::steady_timer end_limit_{executor_};
+  boost::asio::steady_timer announcement_{executor_};
   std::mutex mutex_;
   dds::Participant participant_;
+  Admission admission_;
   Barrier barrier_{participant_};
   std::vector<std::shared_ptr<void>> endpoints_;  // destroyed before the participant, in reverse order of opening
   std::vector<std::function<msg::StreamManifest()>> manifests_;
@@ -173,10 +180,14 @@ class Service {
   std::optional<std::uint64_t> end_step_;
   std::atomic<bool> ready_{false};
   std::atomic<bool> gave_way_{false};
-  bool is_closed_ = false;     // guarded by mutex_: run() is over, and with it the life of what the handlers belong to
+  bool is_closed_ = false;     // guarded by mutex_: no input is handled any more
   bool manifest_out_ = false;  // guarded by mutex_
   ExitCode exit_code_ = ExitCode::kOk;
 };
+
+/// What an input did not take, as a sentence; empty when it took everything.
+[[nodiscard]] std::string lossText(const std::string& topic, std::uint64_t lost, std::uint64_t unreadable,
+                                   std::uint64_t of_strangers);
 
 /// How a stream of a writer went, for the manifest.
 template <class T>
@@ -214,13 +225,16 @@ void Service::input(const dds::Topic<T>& topic, const std::vector<std::string>& 
         const std::lock_guard lock(mutex_);
         if (!is_closed_) handler(message, sample);
       },
-      [this] { matchesChanged(); });
+      [this] { matchesChanged(); },
+      [this, facts = static_cast<const dds::TopicFacts&>(topic)](const dds::Guid& writer) {
+        return admission_.admits(facts, writer);
+      });
   require(
       topic.name, [raw = &reader->raw()] { return raw->matched(); }, writers);
-  losses_.push_back([raw = reader.get(), name = std::string(topic.name)]() -> std::string {
-    if (raw->rejected() == 0 && raw->raw().lost() == 0) return {};
-    return name + ": " + std::to_string(raw->raw().lost()) + " samples lost on the way, " +
-           std::to_string(raw->rejected()) + " that could not be read";
+  losses_.push_back([raw = reader.get(), facts = static_cast<const dds::TopicFacts&>(topic)] {
+    // Of a status only the latest word counts, and what it replaced is not missing.
+    return lossText(facts.name, facts.profile == dds::Profile::kStatus ? 0 : raw->raw().lost(), raw->rejected(),
+                    raw->raw().refused());
   });
   endpoints_.push_back(reader);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/cell.hpp"
 #include "runtime/command_line.hpp"
 
 namespace baton {
@@ -12,7 +13,8 @@ dds::ParticipantOptions ServiceOptions::participant() const {
           .cell = cell,
           .run = run,
           .service = name,
-          .transport = transport};
+          .transport = transport,
+          .key = key_file.empty() ? std::nullopt : std::optional(readKey(key_file))};
 }
 
 bool parseServiceOptions(int argc, char** argv, const std::string& role, ServiceOptions& options) {
@@ -27,6 +29,8 @@ bool parseServiceOptions(int argc, char** argv, const std::string& role, Service
   addTransport(app, options.transport);
   app.add_option("--checkpoint", options.checkpoint, "checkpoint to go on from, instead of the scenario's start");
   addScheduling(app, options.scheduling);
+  app.add_option("--key", options.key_file, "file with the key of the run: only who has it is heard");
+  app.add_flag("--open", options.is_open, "requests are taken from anybody");
   bool no_recording = false;
   app.add_flag("--no-recording", no_recording, "no recorder takes part in this run");
   if (role == "controller") {
@@ -58,6 +62,8 @@ std::vector<std::string> toArguments(const ServiceOptions& options) {
   if (options.starts_paused && options.role == kPlantName) arguments.emplace_back("--paused");
   if (options.supervised && (options.role == kPlantName || options.role == kRecorderName))
     arguments.emplace_back("--supervised");
+  if (!options.key_file.empty()) arguments.insert(arguments.end(), {"--key", options.key_file});
+  if (options.is_open) arguments.emplace_back("--open");
   if (!options.recording) arguments.emplace_back("--no-recording");
   if (options.role == "controller") arguments.insert(arguments.end(), {"--name", options.name, "--law", options.law});
   if (options.role == kRecorderName) {

@@ -27,7 +27,10 @@ struct ServiceOptions {
   std::string checkpoint;      // file to start from instead of step 0; empty: none
   bool starts_paused = false;  // plant: waits for a request before its first step
   bool supervised = false;     // plant, recorder: a supervisor takes part, who must hear how the run goes
+  std::string key_file;        // with the run's key; empty: everybody is heard
+  bool is_open = false;        // requests are taken from anybody
 
+  /// Throws UnavailableError when the key cannot be read.
   [[nodiscard]] dds::ParticipantOptions participant() const;
 };
 
@@ -53,5 +56,8 @@ inline constexpr const char* kEnvironmentName = "environment";
 inline constexpr const char* kTrajectoryName = "trajectory";
 inline constexpr const char* kRecorderName = "recorder";
 inline constexpr const char* kSupervisorName = "supervisor";
+/// Who speaks in the manifest of a service that gave way: the service's own name is the other one's.
+inline constexpr const char* kSecondCopyName = "a second copy";
+inline constexpr const char* kOperatorPrefix = "operator-";
 
 }  // namespace baton

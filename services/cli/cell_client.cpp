@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -16,12 +17,15 @@ CellClient::CellClient(const RunInfo& info)
                                            .partition = info.cell + "/" + info.run,
                                            .cell = info.cell,
                                            .run = info.run,
-                                           .service = "operator-" + std::to_string(getpid()),
-                                           .transport = info.transport},
+                                           .service = kOperatorPrefix + std::to_string(getpid()),
+                                           .transport = info.transport,
+                                           .key = keyOf(info)},
                    [this](const dds::Peer&) {
                      const std::lock_guard lock(mutex_);
                      changed_.notify_all();
-                   }) {}
+                   }),
+      admission_(participant_, false,
+                 [](const std::string& text) { std::fprintf(stderr, "baton: warning: %s\n", text.c_str()); }) {}
 
 namespace {
 /// How the cell's last run ended, as a sentence; empty when there was none.

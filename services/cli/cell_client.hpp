@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "dds/typed.hpp"
+#include "runtime/admission.hpp"
 #include "runtime/cell.hpp"
 #include "runtime/service_options.hpp"
 
@@ -71,6 +72,7 @@ class CellClient {
   std::mutex mutex_;
   std::condition_variable changed_;
   dds::Participant participant_;
+  Admission admission_;
 };
 
 template <class T>
@@ -78,12 +80,15 @@ std::vector<T> CellClient::collect(const dds::Topic<T>& topic, const std::functi
                                    std::chrono::milliseconds patience,
                                    const std::function<bool(const dds::RawSample&)>& accept) {
   std::vector<T> samples;
-  const dds::Reader<T> reader(participant_, topic, [&](const T& message, const dds::RawSample& sample) {
-    if (!accept(sample)) return;
-    const std::lock_guard lock(mutex_);
-    samples.push_back(message);
-    changed_.notify_all();
-  });
+  const dds::Reader<T> reader(
+      participant_, topic,
+      [&](const T& message, const dds::RawSample& sample) {
+        if (!accept(sample)) return;
+        const std::lock_guard lock(mutex_);
+        samples.push_back(message);
+        changed_.notify_all();
+      },
+      {}, [&](const dds::Guid& writer) { return admission_.admits(topic, writer); });
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, patience, [&] { return enough(samples); });
   return samples;
@@ -114,7 +119,7 @@ std::vector<Answer> CellClient::askAll(const dds::Topic<Request>& request_topic,
         if (is_answer(message)) answers.push_back(message);
         changed_.notify_all();
       },
-      wake);
+      wake, [&](const dds::Guid& writer) { return admission_.admits(answer_topic, writer); });
   dds::Writer<Request> writer(participant_, request_topic, wake);
   // Writer and reader are matched at different times: both have to be before a request is worth sending.
   std::unique_lock lock(mutex_);

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "base/text.hpp"
 #include "cell_target.hpp"
 #include "messages/state_names.hpp"
 #include "runtime/json.hpp"
@@ -98,20 +99,23 @@ std::string doneText(msg::RecordAction action, std::uint64_t last_before) {
   return fmt::format("done behind step {}", last_before);
 }
 
-/// The recorder's own folder is not this one.
-std::string absoluteOut(const std::string& out) {
+/// What to ask the recorder for: names are all it takes.
+std::string nameOf(const std::string& out, const RunInfo& run) {
   if (out.empty()) return "";
   const std::filesystem::path path = outputPath(out).lexically_normal();
+  const std::string name = path.filename().string();
   if (std::filesystem::exists(path)) throw UsageError("--out " + out + " exists: choose another name");
+  if (!isFileName(name, ".mcap")) throw UsageError("--out " + printable(out) + ": expected a file that ends in .mcap");
   constexpr std::size_t kMaxPath = 400;
   if (path.string().size() > kMaxPath) throw UsageError("--out: expected a path of at most 400 characters");
-  return path.string();
+  sendElsewhere(run, path);
+  return name;
 }
 
 void ask(const RecordArguments& arguments, msg::RecordAction action, ExitCode& exit_code) {
-  const std::string out = absoluteOut(arguments.out);
   CellClient client = clientOf(arguments.target);
   requireRecorder(client);
+  const std::string out = nameOf(arguments.out, client.info());
   msg::RecordRequest request;
   request.request_id(CellClient::newRequestId());
   request.action(action);

@@ -66,6 +66,8 @@ void addRunOptions(CLI::App& command, RunRequest& request) {
   command.add_flag("--record-later", request.record_later, "record nothing before `baton record start`")
       ->excludes("--no-recording");
   addScheduling(command, request.scheduling);
+  command.add_flag("--open", request.is_open,
+                   "take requests (swap, param, sim, record, controller) from anybody on this machine");
   command
       .add_option("--restarts", request.restarts, "how often a part that dies is started again; not plant and recorder")
       ->check(CLI::Range(0, 1000));
@@ -167,6 +169,7 @@ void down(const std::string& cell, int domain, bool json, ExitCode& exit_code) {
     throw UnavailableError("cannot stop process " + std::to_string(info.supervisor_pid) +
                            ": it belongs to somebody else");
   }
+  kill(info.supervisor_pid, SIGCONT);  // who is stopped would never hear of it
   ProgressLine line;
   const auto isThere = [&] {
     const std::optional<RunInfo> now = activeRun(domain, cell);
@@ -240,7 +243,7 @@ void addRunCommands(CLI::App& app, ExitCode& exit_code) {
       "--in-process", *in_process,
       "all parts in this process, without DDS and recording, as fast as possible: the same bytes, the same hash");
   for (const char* other :
-       {"--out", "--overwrite", "--no-recording", "--record-later", "--restarts", "--fifo", "--cpus"}) {
+       {"--out", "--overwrite", "--no-recording", "--record-later", "--restarts", "--fifo", "--cpus", "--open"}) {
     in_process_option->excludes(other);
   }
   run_command->callback([=, &exit_code] {

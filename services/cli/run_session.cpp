@@ -1,6 +1,7 @@
 #include "run_session.hpp"
 
 #include <fcntl.h>
+#include <linux/close_range.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -81,6 +82,7 @@ pid_t launch(const fs::path& program, const std::vector<std::string>& arguments,
     dup2(nothing, STDIN_FILENO);
     dup2(log, STDOUT_FILENO);
     dup2(log, STDERR_FILENO);
+    ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
     execv(program.c_str(), argv.data());
     _exit(127);
   }
@@ -144,6 +146,7 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
   }
   if (!request.out.empty()) info_.recording = checkedOut(request, scenario.recording).string();
   info_.folder = runFolder(info_.run).string();  // nothing is refused from here on
+  makeKeyWhenMissing(info_);
   if (is_recorded && request.out.empty()) info_.recording = info_.folder + "/" + scenario.name + ".mcap";
 
   std::vector<std::string> arguments{"--scenario",  info_.scenario,
@@ -155,6 +158,7 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
   if (!request.checkpoint.empty()) arguments.insert(arguments.end(), {"--checkpoint", request.checkpoint});
   for (std::string& argument : toArguments(request.scheduling)) arguments.push_back(std::move(argument));
   if (request.paused) arguments.emplace_back("--paused");
+  if (request.is_open) arguments.emplace_back("--open");
   if (request.record_later) arguments.emplace_back("--record-later");
   if (info_.recording.empty()) {
     arguments.emplace_back("--no-recording");
@@ -172,18 +176,27 @@ std::optional<ExitCode> RunSession::follow(const std::function<void(const RunPro
                                 .partition = info_.cell + "/" + info_.run,
                                 .cell = info_.cell,
                                 .run = info_.run,
-                                .service = "operator-" + std::to_string(getpid()),
-                                .transport = info_.transport});
-  const dds::Reader<msg::SimStatus> sim(participant, dds::topics::kSimStatus,
-                                        [&](const msg::SimStatus& message, const dds::RawSample&) {
-                                          const std::lock_guard lock(mutex);
-                                          latest.sim = message;
-                                        });
-  const dds::Reader<msg::RecorderStatus> recorder(participant, dds::topics::kRecorderStatus,
-                                                  [&](const msg::RecorderStatus& message, const dds::RawSample&) {
-                                                    const std::lock_guard lock(mutex);
-                                                    latest.recorder = message;
-                                                  });
+                                .service = kOperatorPrefix + std::to_string(getpid()),
+                                .transport = info_.transport,
+                                .key = keyOf(info_)});
+  Admission admission(participant, false, [](const std::string&) {});  // the run itself tells
+  const auto only = [&](const dds::TopicFacts& topic) {
+    return [&](const dds::Guid& writer) { return admission.admits(topic, writer); };
+  };
+  const dds::Reader<msg::SimStatus> sim(
+      participant, dds::topics::kSimStatus,
+      [&](const msg::SimStatus& message, const dds::RawSample&) {
+        const std::lock_guard lock(mutex);
+        latest.sim = message;
+      },
+      {}, only(dds::topics::kSimStatus));
+  const dds::Reader<msg::RecorderStatus> recorder(
+      participant, dds::topics::kRecorderStatus,
+      [&](const msg::RecorderStatus& message, const dds::RawSample&) {
+        const std::lock_guard lock(mutex);
+        latest.recorder = message;
+      },
+      {}, only(dds::topics::kRecorderStatus));
   int passed_on = 0;
   for (;;) {
     int how = 0;

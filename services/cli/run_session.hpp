@@ -28,7 +28,8 @@ struct RunRequest {
   int restarts = 0;
   std::string checkpoint;  // to go on from; empty: the scenario's start
   Scheduling scheduling;
-  bool paused = false;  // waits for a request before its first step
+  bool paused = false;   // waits for a request before its first step
+  bool is_open = false;  // takes requests from anybody
 };
 
 /// The latest words of a run, as far as there are some.

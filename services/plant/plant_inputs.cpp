@@ -69,6 +69,7 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
   if (status.state() == msg::SERVICE_READY) {
     if (status.plant() != service_.participant().self().prefix) {
       // Discovery may tell of the run's own plant only after everybody else has been matched.
+      if (master_.phase() != SimPhase::kStarting) return;
       return service_.giveWay(name + " answers the steps of another plant");
     }
     waited_for_.erase(name);
@@ -174,8 +175,8 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
         }
         break;
       case msg::SIM_RATE:
-        if (!std::isfinite(request.rate()) || request.rate() < 0.0) {
-          refuse("expected a positive rate, or 0 for as fast as possible");
+        if (request.rate() != 0.0 && !(request.rate() >= kMinRate && request.rate() <= kMaxRate)) {
+          refuse("expected a rate from 0.0001 to 1000000, or 0 for as fast as possible");
         } else if (isRealtime()) {
           refuse("a realtime run has rate 1");
         } else {

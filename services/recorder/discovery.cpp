@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <boost/asio/post.hpp>
 
+#include "base/text.hpp"
+
 namespace baton {
 namespace {
 
@@ -13,6 +15,13 @@ std::string qosYaml(const dds::DiscoveredWriter& writer) {
   const auto word = [](bool value) { return value ? "true" : "false"; };
   return std::string("reliability: ") + word(writer.reliable) + "\ndurability: " + word(writer.transient_local) +
          "\nownership: " + word(writer.exclusive_ownership) + "\nkeyed: " + word(writer.keyed) + "\n";
+}
+
+/// Of a topic that Baton itself has; nullptr for any other.
+const dds::TopicFacts* factsOf(const std::string& topic) {
+  const auto found =
+      std::ranges::find_if(dds::topics::kAll, [&](const dds::TopicFacts& one) { return topic == one.name; });
+  return found == dds::topics::kAll.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -29,7 +38,7 @@ TopicReaders::~TopicReaders() {
 
 void TopicReaders::watch() {
   service_.participant().watchWriters([this](const dds::DiscoveredWriter& writer) {
-    if (!isOurs(writer) || dds::prefixOf(writer.guid) == own_) return;
+    if (!isOurs(writer) || dds::prefixOf(writer.guid) == own_ || !isWanted(writer)) return;
     noteWriter(writer);
     boost::asio::post(service_.executor(), [this, writer] { writerFound(writer); });
   });
@@ -77,6 +86,17 @@ bool TopicReaders::isOurs(const dds::DiscoveredWriter& writer) const {
                      [&](const std::string& theirs) { return fnmatch(theirs.c_str(), partition.c_str(), 0) == 0; });
 }
 
+bool TopicReaders::isWanted(const dds::DiscoveredWriter& writer) {
+  if (hasControlCharacters(writer.topic) || hasControlCharacters(writer.type)) {
+    service_.event(msg::SEVERITY_WARNING, "stranger",
+                   "a writer of " + dds::toString(writer.guid) +
+                       " is not recorded: control characters in the name of its topic or type");
+    return false;
+  }
+  const dds::TopicFacts* facts = factsOf(writer.topic);
+  return facts == nullptr || service_.admission().admits(*facts, writer.guid);
+}
+
 void TopicReaders::noteWriter(const dds::DiscoveredWriter& writer) {
   const std::optional<dds::Peer> peer = service_.participant().peer(dds::prefixOf(writer.guid));
   const std::lock_guard lock(facts_mutex_);
@@ -116,7 +136,10 @@ void TopicReaders::writerFound(const dds::DiscoveredWriter& writer) {
         [this, index](const dds::RawSample& sample) {
           if (dds::prefixOf(sample.writer) != own_ && isFor(index, sample.writer)) sink_(index, sample);
         },
-        [this] { service_.matchesChanged(); });
+        [this] { service_.matchesChanged(); },
+        [this, facts = factsOf(writer.topic)](const dds::Guid& guid) {
+          return facts == nullptr || service_.admission().admits(*facts, guid);
+        });
   } catch (const Error& error) {
     {
       const std::lock_guard facts_lock(facts_mutex_);

@@ -1,6 +1,8 @@
 /// The topics of the cell, found as their writers appear, each read as raw bytes: no type is known here. A topic that
 /// is left out is read only where the run waits for the recorder to listen.
 ///
+/// On the topics of a run only those are recorded who are heard there; topics of other programs are anybody's.
+///
 /// Readers are made on the executor; who writes what is noted where discovery tells of it, before a sample can come.
 #pragma once
 
@@ -54,6 +56,7 @@ class TopicReaders {
     std::unique_ptr<dds::RawReader> reader;
   };
 
+  [[nodiscard]] bool isWanted(const dds::DiscoveredWriter& writer);
   void noteWriter(const dds::DiscoveredWriter& writer);
   void writerFound(const dds::DiscoveredWriter& writer);
   [[nodiscard]] bool isOurs(const dds::DiscoveredWriter& writer) const;

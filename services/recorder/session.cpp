@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/text.hpp"
 #include "dds/codec.hpp"
 #include "mcap/lookup.hpp"
 #include "run_manifest.hpp"
+#include "runtime/cell.hpp"
 #include "runtime/recording_parts.hpp"
 
 namespace baton {
@@ -97,7 +99,7 @@ void RecordingSession::takeBatch(const SampleQueue::Batch& batch) {
   for (const SampleQueue::Drop& drop : batch.drops) {
     Stream& stream = streamOf(drop.topic, drop.writer);
     if (stream.is_booked) ledger_.dropped(*stream.received, drop.first_sequence, drop.last_sequence);
-    stream.lost_at = credit_.elapsedSteps();
+    stream.dropped(credit_.elapsedSteps());
   }
 }
 
@@ -195,7 +197,7 @@ msg::RecordReply RecordingSession::answer(const msg::RecordRequest& request) {
   try {
     switch (request.action()) {
       case msg::RECORD_START:
-        path = request.path().size() > 0 ? request.path().c_str() : service_.options().out;
+        path = request.path().size() > 0 ? pathOf(request) : service_.options().out;
         start(path);
         break;
       case msg::RECORD_STOP: text = text_ = finish({.run_is_over = false, .reason = "stopped on request"}); break;
@@ -217,13 +219,17 @@ msg::RecordReply RecordingSession::answer(const msg::RecordRequest& request) {
   return reply;
 }
 
-/// Paths come from anybody. A file that is there is never replaced.
+/// Names come from anybody who may operate the run. A file that is there is never replaced.
 std::string RecordingSession::objectionTo(const msg::RecordRequest& request) const {
-  const std::string path = request.path().c_str();
-  if (!path.empty() && !std::filesystem::path(path).is_absolute()) return "expected an absolute path, found " + path;
+  if (const std::string name = request.path().c_str(); !name.empty() && !isFileName(name, ".mcap")) {
+    return "expected the name of a file that ends in .mcap, without a folder: it lies where the run's recording does; "
+           "found " +
+           printable(name);
+  }
   if (request.action() != msg::RECORD_SNAPSHOT) return "";
-  if (path == path_) return path + " is where the ring goes at the end of the run";
-  return roomObjection(config_, ring_->bytes(), freeBytes(pathOf(request)));
+  const std::filesystem::path path = pathOf(request);
+  if (path == path_) return path.string() + " is where the ring goes at the end of the run";
+  return roomObjection(config_, ring_->bytes(), freeBytes(path));
 }
 
 void RecordingSession::start(const std::string& path) {
@@ -241,8 +247,10 @@ void RecordingSession::start(const std::string& path) {
 }
 
 std::string RecordingSession::pathOf(const msg::RecordRequest& request) const {
-  if (request.path().size() > 0) return request.path().c_str();
   const std::filesystem::path own(service_.options().out);
+  if (request.path().size() > 0) {
+    return placeOf(service_.options().key_file, own.parent_path(), request.path().c_str()).string();
+  }
   const std::string name =
       own.stem().string() + "_step" + std::to_string(credit_.stateStep()) + own.extension().string();
   return (own.parent_path() / name).string();

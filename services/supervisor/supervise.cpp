@@ -32,12 +32,13 @@ ExitCode supervise(int argc, char** argv) {
                  "how often a part that dies is started again; not plant and recorder")
       ->check(CLI::Range(0, 1000));
   std::string checkpoint;
-  bool starts_paused = false, record_later = false;
+  bool starts_paused = false, record_later = false, is_open = false;
   Scheduling scheduling;
   addScheduling(app, scheduling);
   app.add_option("--checkpoint", checkpoint, "checkpoint to go on from, instead of the scenario's start");
   app.add_flag("--record-later", record_later, "the recorder waits for `record start`");
   app.add_flag("--paused", starts_paused, "wait for `sim resume` before the first step");
+  app.add_flag("--open", is_open, "requests are taken from anybody");
   if (!parseCommandLine(app, argc, argv)) return ExitCode::kOk;
   if (info.run.empty()) info.run = newRunId();
   info.folder = runFolder(info.run).string();
@@ -54,6 +55,7 @@ ExitCode supervise(int argc, char** argv) {
   const CellLock lock(info);
   // The run keeps the experiment as it was, whatever becomes of the files.
   keepExperiment(info, scenario);
+  makeKeyWhenMissing(info);
 
   ServiceOptions options;
   options.role = options.name = kSupervisorName;
@@ -69,6 +71,8 @@ ExitCode supervise(int argc, char** argv) {
   options.supervised = true;
   options.record_later = record_later;
   options.scheduling = scheduling;
+  options.key_file = keyFile(info);
+  options.is_open = is_open;
   Service service(options, std::move(scenario));
   held.release();
   Supervisor supervisor(service, deployment);

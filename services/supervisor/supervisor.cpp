@@ -66,6 +66,7 @@ Supervisor::Supervisor(Service& service, Deployment deployment)
 ExitCode Supervisor::run() {
   startAll();
   service_.run();  // what the handlers wrote is ours alone from here on
+  if (sim_.state() == msg::SIM_STATE_ABORTED) fail(ExitCode::kAborted, sim_.reason().c_str());
   // A run that was reset is its last take.
   std::erase_if(swaps_, [&](const msg::SwapOutcome& swap) { return swap.take() != sim_.take(); });
   for (const msg::SwapOutcome& swap : swaps_) judge(swap);
@@ -226,19 +227,23 @@ void Supervisor::childFailed(Child& child, const Child::End& end) {
        !has_started ? name + " could not start (" + end.text() + ")" + reason : why + (isRefusal(end) ? reason : ""));
   spdlog::error("{}\n{}", reason_, lastLines(child.command().log_file, 5));
   if (name == kPlantName) {
-    // Nobody else would end the run for the others. Written without the lock: our own reader is called from within.
-    msg::SimStatus last = lastSimStatus();
-    last.state(msg::SIM_STATE_ABORTED);
-    last.reason(reason_.substr(0, 199));
-    sim_out_.write(last);
-    const std::lock_guard lock(service_.mutex());
-    sim_ = last;
-    service_.runEnded(last.step(), false);
+    endForThePlant();
   } else if (!has_started || name == kRecorderName) {
     runIsOver();
   } else {
     enter(Stage::kRunning, kPlantPatience);
   }
+}
+
+/// Nobody else would end the run for the others.
+void Supervisor::endForThePlant() {
+  msg::SimStatus last = lastSimStatus();
+  last.state(msg::SIM_STATE_ABORTED);
+  last.reason(reason_.substr(0, 199));
+  sim_out_.write(last);  // without the lock: our own reader is called from within
+  const std::lock_guard lock(service_.mutex());
+  sim_ = last;
+  service_.runEnded(last.step(), false);
 }
 
 /// The first failure names the run's end; what follows from it does not replace it.
@@ -260,6 +265,7 @@ void Supervisor::onSignal() {
   if (stage_ != Stage::kRunning) return;  // ending already
   fail(ExitCode::kInterrupted, "stopped from outside");
   spdlog::info("stopping the run");
+  for (const auto& child : children_) child->signal(SIGCONT);  // who is stopped could not end anything
   if (!isRunning(kPlantName) || startup_s_ < 0.0) return runIsOver();
   msg::SimRequest request;
   request.request_id(static_cast<std::uint64_t>(getpid()));
@@ -284,7 +290,10 @@ void Supervisor::enter(Stage stage, std::chrono::seconds patience) {
 
 void Supervisor::giveUpWaiting() {
   switch (stage_) {
-    case Stage::kRunning: spdlog::warn("the plant does not end the run"); return runIsOver();
+    case Stage::kRunning:
+      spdlog::warn("the plant does not end the run");
+      fail(ExitCode::kAborted, "the plant did not end the run when it was asked to");
+      return endForThePlant();
     case Stage::kClosingRecording: spdlog::warn("the recorder does not close its file"); return stopChildren();
     case Stage::kStopping:
       for (const auto& child : children_) {
@@ -301,9 +310,6 @@ void Supervisor::giveUpWaiting() {
 
 void Supervisor::runIsOver() {
   if (stage_ != Stage::kRunning) return;
-  if (const msg::SimStatus last = lastSimStatus(); last.state() == msg::SIM_STATE_ABORTED) {
-    fail(ExitCode::kAborted, last.reason().c_str());
-  }
   for (const auto& child : children_) {
     if (child->isRunning()) resident_[child->name()] = child->residentKilobytes();
   }

@@ -41,6 +41,7 @@ class Supervisor {
   void whenBegunOrNot(int looks, const std::function<void()>& judge);
   void childFailed(Child& child, const Child::End& end);
   void judge(const msg::SwapOutcome& swap);
+  void endForThePlant();
   void fail(ExitCode code, const std::string& reason);
   void restart(const std::string& name);
   // launch.cpp: controllers that come and go while it runs

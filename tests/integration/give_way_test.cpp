@@ -73,14 +73,13 @@ TEST_F(GiveWay, TellsWhatWasSentBefore) {
   ASSERT_TRUE(eventually([&] { return !manifests().empty(); }));
   ASSERT_EQ(manifests().size(), 1U);
   const msg::ServiceManifest manifest = manifests()[0];
-  EXPECT_STREQ(manifest.name().c_str(), kTrajectoryName);
+  EXPECT_STREQ(manifest.name().c_str(), kSecondCopyName) << "the trajectory's own is still to come";
   ASSERT_EQ(manifest.streams().size(), 1U);
   EXPECT_STREQ(manifest.streams()[0].topic().c_str(), dds::topics::kReference.name);
   EXPECT_EQ(manifest.streams()[0].count(), 3U);
 }
 
 TEST_F(GiveWay, IsSilentWhenNothingWas) {
-  // The other one's manifest is still to come: this one must not stand for it.
   giveWayAfter(0);
   EXPECT_TRUE(manifests().empty());
 }

@@ -44,9 +44,32 @@ TEST_F(VerifyTest, AWholeRecordingIsProvenComplete) {
   const Verification found = verifyWith({});
   EXPECT_EQ(found.verdict(), RecordingVerdict::kComplete) << all(found);
   EXPECT_EQ(all(found), "");
-  EXPECT_EQ(found.ledger.services(), 3U);
+  EXPECT_EQ(found.ledger.servicesHeard(), 3U);
   EXPECT_EQ(found.messages, 3 * 200U + 3U);
   EXPECT_EQ(found.ledger.streams().size(), 6U);
+}
+
+TEST_F(VerifyTest, WhoeverIsNoServiceOfTheRunIsAFaultOnItsTopics) {
+  for (const auto& [topic, claim] : {std::pair{"contact", "friend"},
+                                     {"contact", ""},
+                                     {"contact", "plant"},
+                                     {"joint_command", "friend"},
+                                     {"plant_state", "trajectory"},
+                                     {"service_manifest", "friend"},
+                                     {"sim_status", "operator-1"}}) {
+    const Verification found = verifyWith({.stranger = topic, .claim = claim});
+    EXPECT_EQ(found.verdict(), RecordingVerdict::kIncomplete) << topic << " " << claim;
+    EXPECT_TRUE(mentions(found.missing, std::string(topic) + ": a writer that is none of the run's services"))
+        << all(found);
+  }
+  for (const auto& [topic, claim] : {std::pair{"plant_state", "plant"},
+                                     {"joint_command", "pd"},
+                                     {"swap_request", "operator-1"},
+                                     {"sim_status", "supervisor"},
+                                     {"somebody's own", "friend"}}) {
+    const Verification found = verifyWith({.stranger = topic, .claim = claim});
+    EXPECT_FALSE(mentions(found.missing, "none of the run's services")) << topic << " " << claim << all(found);
+  }
 }
 
 TEST_F(VerifyTest, WhatTheRecorderSawMissingIsMissing) {

@@ -97,11 +97,13 @@ class Files {
     names_.push_back((folder_ / file).string());
     return *writer_;
   }
-  void write(const Ledger::Key& key, std::uint64_t sequence, mcap::ByteView payload) {
+  void write(const Ledger::Key& key, std::uint64_t sequence, mcap::ByteView payload,
+             const mcap::StringMap& more_metadata = {}) {
     const auto [channel, is_new] = channels_.try_emplace(key);
     if (is_new) {
-      channel->second = writer_->addChannel(key.first, "cdr", mcap::kNoSchema,
-                                            {{"writer", dds::toString(key.second)}, {"type", "T"}});
+      mcap::StringMap metadata{{"writer", dds::toString(key.second)}, {"type", "T"}};
+      metadata.insert(more_metadata.begin(), more_metadata.end());
+      channel->second = writer_->addChannel(key.first, "cdr", mcap::kNoSchema, metadata);
     }
     ++time_ns_;
     writer_->write(channel->second, static_cast<std::uint32_t>(sequence), time_ns_, time_ns_, payload);
@@ -146,6 +148,12 @@ std::vector<std::string> writeRecording(const std::filesystem::path& folder, con
       if (is_there) files.write(stream.key, sequence, payload);
       if (is_first && plan.repeat == i + 1) files.write(stream.key, sequence, payload);
     }
+  }
+  if (!plan.stranger.empty()) {
+    const Ledger::Key key{plan.stranger, dds::Guid{}};
+    const std::vector<std::byte> payload(16);
+    ledger.book(key, 1, payload);
+    files.write(key, 1, payload, {{"service", plan.claim}});
   }
   for (const Stream& stream : streams) {
     if (stream.service == plan.silent) continue;

@@ -21,6 +21,8 @@ struct RecordingPlan {
   bool has_certificate = true;
   std::uint64_t dropped = 0;  // samples that the recorder had no room for
   std::string silent{};       // this service sends no manifest
+  std::string stranger{};     // on this topic a process has written that calls itself by the next name
+  std::string claim{};
 };
 
 /// Writes the recording of a run with a plant, a trajectory and a controller, each with one stream, into `name.mcap`,

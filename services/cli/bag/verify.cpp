@@ -8,11 +8,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <utility>
 
+#include "base/text.hpp"
 #include "mcap/lookup.hpp"
 #include "mcap/reader.hpp"
 #include "report/recording.hpp"
+#include "runtime/admission.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/service_options.hpp"
 
@@ -185,6 +188,28 @@ std::vector<std::string> writersOf(const std::vector<Part>& parts) {
   return servicesBut(kRecorderName, parseScenario("scenario.yaml", *scenario, "robot.yaml", *robot));
 }
 
+/// Whoever wrote on a topic of the run without being one of its services, whatever it says of itself.
+std::set<std::string> strangersIn(const std::vector<Part>& parts, const Ledger& ledger) {
+  std::set<std::string> found;
+  for (const Part& part : parts) {
+    for (const auto& [id, channel] : part.reader->channels()) {
+      const auto facts =
+          std::ranges::find_if(dds::topics::kAll, [&](const auto& topic) { return channel.topic == topic.name; });
+      if (facts == dds::topics::kAll.end() || facts->written_by == dds::WrittenBy::kOperators) continue;
+      if (!channel.metadata.contains("service")) continue;  // nobody asked who it was
+      const std::string service = mcap::valueOf(channel.metadata, "service");
+      const auto writer = dds::guidCalled(mcap::valueOf(channel.metadata, "writer"));
+      // Of controllers that came later the file may have no more than their manifest, or not even that.
+      const bool is_of_run = ledger.expects(service) || service == kSupervisorName || service == kRecorderName ||
+                             ledger.servicesHeard() == 0 || (writer && ledger.isVouchedFor({channel.topic, *writer}));
+      if (is_of_run && mayWrite(facts->written_by, service)) continue;
+      found.insert(fmt::format("{}: a writer that is none of the run's services whose topic it is{}", channel.topic,
+                               service.empty() ? "" : ", and calls itself " + printable(service)));
+    }
+  }
+  return found;
+}
+
 /// @param are_all  no part of the recording is known to be elsewhere.
 void judge(const std::vector<Part>& parts, bool are_all, const std::optional<std::string>& certificate,
            Verification& result) {
@@ -206,6 +231,7 @@ void judge(const std::vector<Part>& parts, bool are_all, const std::optional<std
   try {
     for (const std::string& service : writersOf(parts)) result.ledger.expect(service);
     if (certificate) result.ledger.excuse(*certificate);
+    for (const std::string& text : strangersIn(parts, result.ledger)) result.missing.push_back(text);
     add(result.missing, result.ledger.problems());
     if (!certificate) return result.missing.emplace_back("it has no certificate"), void();
     add(result.missing, result.ledger.disagreements(*certificate));

@@ -21,9 +21,9 @@ struct VerifyRequest {
 void printText(const Verification& found) {
   fmt::print("{}: {}\n", fmt::join(found.files, ", "), nameOf(found.verdict()));
   if (found.verdict() == RecordingVerdict::kComplete) {
-    if (found.ledger.services() > 0) {
+    if (found.ledger.servicesHeard() > 0) {
       fmt::print("            proven from the bytes: {} services vouch for what they sent, all of it is here\n",
-                 found.ledger.services());
+                 found.ledger.servicesHeard());
     } else {
       fmt::print(
           "            by the bytes no sample is missing between a writer's first and last; the run went on when "
@@ -47,7 +47,7 @@ nlohmann::ordered_json toJson(const Verification& found) {
           {"cuts", found.cuts},
           {"missing", found.missing},
           {"certificate", found.summary},
-          {"manifests", found.ledger.services()},
+          {"manifests", found.ledger.servicesHeard()},
           {"messages", found.messages},
           {"size_B", found.bytes},
           {"streams", nlohmann::ordered_json::parse(found.ledger.certificate()).at("streams")}};

@@ -1,5 +1,6 @@
 /// The recording's completeness certificate: what came held against what was sent.
 #include "runtime/ledger.hpp"
+#include "runtime/service_options.hpp"
 
 #include <gtest/gtest.h>
 
@@ -229,9 +230,9 @@ TEST_F(LedgerTest, WhatServicesSayIsReadFromWhatIsBooked) {
   ledger_.book(manifests, 1, encoded(manifestOf("plant", {&state_})));
   ledger_.book(manifests, 2, encoded(manifestOf("environment", {})));
   EXPECT_TRUE(ledger_.isComplete());
-  EXPECT_EQ(ledger_.services(), 2u);
+  EXPECT_EQ(ledger_.servicesHeard(), 2u);
   ledger_.book(manifests, 3, encoded(manifestOf("environment", {})));
-  EXPECT_EQ(ledger_.services(), 2u) << "started again, or a second copy: one service";
+  EXPECT_EQ(ledger_.servicesHeard(), 2u) << "started again, or a second copy: one service";
 
   msg::ServiceStatus joined;
   joined.name("late");
@@ -244,6 +245,21 @@ TEST_F(LedgerTest, WhatServicesSayIsReadFromWhatIsBooked) {
   ledger_.book(status, 2, encoded(joined));
   EXPECT_TRUE(ledger_.isSettled()) << "it will not come";
   EXPECT_FALSE(ledger_.isComplete());
+}
+
+TEST_F(LedgerTest, ASecondCopySpeaksForItsOwnSamplesAndForNoService) {
+  transmit(state_, 10);
+  Sender second{"contact", guidOf(9)};
+  transmit(contact_, 10);
+  transmit(second, 2);
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  ledger_.addManifest(manifestOf(kSecondCopyName, {&second}));
+  EXPECT_FALSE(ledger_.isSettled()) << "the environment's own is still to come";
+  EXPECT_TRUE(mentions(ledger_.problems(), "environment sent no manifest"));
+  EXPECT_EQ(ledger_.servicesHeard(), 1U);
+  ledger_.addManifest(manifestOf("environment", {&contact_}));
+  EXPECT_TRUE(ledger_.isComplete()) << ledger_.problems().front();
+  EXPECT_EQ(ledger_.servicesHeard(), 2U);
 }
 
 TEST_F(LedgerTest, AgreesWithItsOwnCertificateAndWithNoOther) {

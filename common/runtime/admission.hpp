@@ -1,0 +1,43 @@
+/// Who is heard on which topic of a run. In one place for every input of every service: a sample counts when its writer
+/// has the run's key and is, by name, a service whose topic it is.
+#pragma once
+
+#include <functional>
+#include <mutex>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "dds/participant.hpp"
+#include "dds/topics.hpp"
+
+namespace baton {
+
+/// Whether a service of that name has anything to say there. The supervisor speaks for services that have died.
+[[nodiscard]] bool mayWrite(dds::WrittenBy who, std::string_view service);
+
+class Admission {
+ public:
+  /// Called once for each stranger, on a DDS thread, with a sentence that names it.
+  using Tell = std::function<void(const std::string& text)>;
+
+  /// @param is_open  whether requests are taken from anybody.
+  Admission(const dds::Participant& participant, bool is_open, Tell tell)
+      : participant_(participant), is_open_(is_open), tell_(std::move(tell)) {}
+
+  /// Any thread. Without a key everybody is heard.
+  [[nodiscard]] bool admits(const dds::TopicFacts& topic, const dds::Guid& writer);
+  /// It is there and says that it is of our run.
+  void met(const dds::Peer& stranger);
+
+ private:
+  void tellOnce(const dds::GuidPrefix& prefix, const std::string& text);
+
+  const dds::Participant& participant_;
+  bool is_open_;
+  Tell tell_;
+  std::mutex mutex_;
+  std::set<dds::GuidPrefix> told_;
+};
+
+}  // namespace baton
