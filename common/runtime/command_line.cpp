@@ -108,7 +108,7 @@ double parseRate(const std::string& what, const std::string& text) {
   double rate = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
   if (error != std::errc() || end != text.data() + text.size() || !(rate >= kMinRate && rate <= kMaxRate)) {
-    throw UsageError(what + ": expected a number from 0.0001 to 1000000, or max, found '" + text + "'");
+    throw UsageError(what + ": expected a number from 1e-7 to 1e6, or max, found '" + text + "'");
   }
   return rate;
 }

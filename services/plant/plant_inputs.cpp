@@ -176,7 +176,7 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
         break;
       case msg::SIM_RATE:
         if (request.rate() != 0.0 && !(request.rate() >= kMinRate && request.rate() <= kMaxRate)) {
-          refuse("expected a rate from 0.0001 to 1000000, or 0 for as fast as possible");
+          refuse("expected a rate from 1e-7 to 1e6, or 0 for as fast as possible");
         } else if (isRealtime()) {
           refuse("a realtime run has rate 1");
         } else {

@@ -90,7 +90,7 @@ Measurement measureCells(const Case& one, int steps, Programs& programs) {
   Starter starter(programs.domain(), prefix + "*");
   for (int i = 0; i < one.cells; ++i) {
     programs.start("baton", {"run", scenario, "--cell", cellName(i), "--domain", std::to_string(programs.domain()),
-                             "--no-recording", "--json"});
+                             "--no-recording", "--open", "--json"});
   }
   programs.waitUntil([&] { return starter.areRunning(one.cells); });
   starter.letGo();

@@ -175,8 +175,8 @@ Handovers measureHandovers(const SwapCase& one, int swaps, const std::vector<std
   const Scenario scenario = loadScenario(file);
   const std::string cell = "bench-" + std::to_string(getpid());
   Operator person(programs.domain(), cell);
-  std::vector<std::string> arguments{"run",   file, "--cell", cell, "--domain", std::to_string(programs.domain()),
-                                     "--json"};
+  std::vector<std::string> arguments{
+      "run", file, "--open", "--cell", cell, "--domain", std::to_string(programs.domain()), "--json"};
   arguments.insert(arguments.end(), scheduling.begin(), scheduling.end());
   programs.start("baton", arguments, static_cast<int>(ExitCode::kFailed));  // a holder may lose the baton
   programs.waitUntil([&] { return person.isConnected(); });
