@@ -113,6 +113,7 @@ void Service::giveWayToElders() {
 
 void Service::peerJoined(const dds::Peer& peer) {
   if (peer.is_stranger) return admission_.met(peer);
+  greet();
   checkBarrier();
   if (!gave_way_ && isRival(peer)) {
     event(msg::SEVERITY_WARNING, "intruder", "a second " + peer.service + " of run " + peer.run + "; this one goes on");
@@ -131,6 +132,16 @@ void Service::giveWay(const std::string& why) {
 
 void Service::matchesChanged() {
   asio::post(executor_, [this] { checkBarrier(); });
+}
+
+/// Whoever joins says so before it listens: what DDS answers at once may be lost, and is not said again for seconds.
+void Service::greet() {
+  if (std::exchange(is_greeting_, true)) return;  // one word for all who come at this time
+  greeting_.expires_after(std::chrono::milliseconds(100));
+  greeting_.async_wait([this](const boost::system::error_code& error) {
+    is_greeting_ = false;
+    if (!error) participant_.announce();
+  });
 }
 
 /// Somebody it waits for may not have heard of it. Ever more seldom: many that start together must not drown each

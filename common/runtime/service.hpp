@@ -134,6 +134,7 @@ class Service {
   void strikeWhenReached(std::uint64_t step);
   void checkBarrier();
   void announceUntilReady(std::chrono::milliseconds pause);
+  void greet();
   void publishManifest();
   void sayManifest();
   void onRewindMessage(const msg::Rewind& rewind);
@@ -148,6 +149,8 @@ class Service {
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{executor_.get_executor()};
   boost::asio::steady_timer end_limit_{executor_};
   boost::asio::steady_timer announcement_{executor_};
+  boost::asio::steady_timer greeting_{executor_};
+  bool is_greeting_ = false;
   std::mutex mutex_;
   dds::Participant participant_;
   Admission admission_;
