@@ -107,8 +107,8 @@ double parseRate(const std::string& what, const std::string& text) {
   if (text == "max") return 0.0;
   double rate = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
-  if (error != std::errc() || end != text.data() + text.size() || !(rate >= kMinRate && rate <= kMaxRate)) {
-    throw UsageError(what + ": expected a number from 1e-7 to 1e6, or max, found '" + text + "'");
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(rate) || rate < kMinRate) {
+    throw UsageError(what + ": expected a number from 1e-7 on, or max, found '" + text + "'");
   }
   return rate;
 }

@@ -7,8 +7,8 @@
 
 namespace baton {
 
-/// Slower than that looks like a standstill; for faster there is 0.
-inline constexpr double kMinRate = 1e-7, kMaxRate = 1e6;
+/// Slower than that looks like a standstill.
+inline constexpr double kMinRate = 1e-7;
 
 class Pacer {
  public:

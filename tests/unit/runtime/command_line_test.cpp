@@ -60,7 +60,7 @@ TEST(CommandLine, RefusesWhatIsNoFiniteNumber) {
 TEST(CommandLine, ARateIsOneThatCanBeSeen) {
   EXPECT_EQ(parseRate("rate", "max"), 0.0);
   EXPECT_EQ(parseRate("rate", "0.5"), 0.5);
-  for (const char* word : {"0", "-1", "nan", "inf", "1e-300", "1e300", "", "1x"}) {
+  for (const char* word : {"0", "-1", "nan", "inf", "1e-300", "", "1x"}) {
     EXPECT_THROW((void)parseRate("rate", word), UsageError) << word;
   }
 }
