@@ -296,6 +296,9 @@ std::string hashLeftAlone() {
 
 TEST_P(Attacked, TheRunIsAsIfNobodyHadBeenThere) {
   const auto& [attack, mode] = GetParam();
+  const bool is_determined = std::string(mode.name) == "lockstep";
+  // Before the stranger is there: a run that has not begun believes in a plant that says it is older.
+  const std::string expected_hash = is_determined ? hashLeftAlone() : "";
   const Bench bench;
   const LiveRun run(bench, mode.scenario, {"--paused"});
   const std::string id = run.status.at("run");
@@ -323,8 +326,8 @@ TEST_P(Attacked, TheRunIsAsIfNobodyHadBeenThere) {
   EXPECT_EQ(result.at("state"), "finished") << result;
   EXPECT_EQ(result.at("exit_code"), 0) << result;
   EXPECT_TRUE(result.at("recording").at("complete")) << result;
-  if (std::string(mode.name) == "lockstep") {
-    EXPECT_EQ(result.at("chain_hash"), hashLeftAlone());
+  if (is_determined) {
+    EXPECT_EQ(result.at("chain_hash"), expected_hash);
   }
   EXPECT_EQ(bench.baton({"bag", "verify", run.recording}).exit_code, 0);
   EXPECT_FALSE(std::filesystem::exists(bench.folder() / "authorized_keys"));
