@@ -112,11 +112,11 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
   }
 
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
-  // Whoever is discovered is answered at once; repeating it is for datagrams that were lost. Each participant tells every
-  // other, so the price grows with the square of their number: announce() is for who still looks for somebody. The lease
-  // outlives a process that is stopped for a while and then goes on; processes that end are noticed by whoever launched
-  // them, not by DDS. It is as long as this for another reason: a lease that is looked at while its participant leaves
-  // ends the process (an assertion in Fast DDS 2.9.1), and the looks come a lease apart.
+  // Whoever is discovered is answered at once; repeating it is for datagrams that were lost. Each participant tells
+  // every other, so the price grows with the square of their number: announce() is for who still looks for somebody.
+  // The lease outlives a process that is stopped for a while and then goes on; processes that end are noticed by
+  // whoever launched them, not by DDS. It is as long as this for another reason: a lease that is looked at while its
+  // participant leaves ends the process (an assertion in Fast DDS 2.9.1), and the looks come a lease apart.
   discovery.leaseDuration_announcementperiod = {3, 0};
   discovery.leaseDuration = {3600, 0};
   discovery.initial_announcements.count = 5;
