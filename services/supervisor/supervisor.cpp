@@ -66,7 +66,7 @@ Supervisor::Supervisor(Service& service, Deployment deployment)
 ExitCode Supervisor::run() {
   startAll();
   service_.run();  // what the handlers wrote is ours alone from here on
-  if (sim_.state() == msg::SIM_STATE_ABORTED) fail(ExitCode::kAborted, sim_.reason().c_str());
+  considerAbort();
   // A run that was reset is its last take.
   std::erase_if(swaps_, [&](const msg::SwapOutcome& swap) { return swap.take() != sim_.take(); });
   for (const msg::SwapOutcome& swap : swaps_) judge(swap);
@@ -308,8 +308,15 @@ void Supervisor::giveUpWaiting() {
   }
 }
 
+/// At the first word of the end, before what follows from it; and at the last, in case the first was another.
+void Supervisor::considerAbort() {
+  const msg::SimStatus last = lastSimStatus();
+  if (last.state() == msg::SIM_STATE_ABORTED) fail(ExitCode::kAborted, last.reason().c_str());
+}
+
 void Supervisor::runIsOver() {
   if (stage_ != Stage::kRunning) return;
+  considerAbort();
   for (const auto& child : children_) {
     if (child->isRunning()) resident_[child->name()] = child->residentKilobytes();
   }

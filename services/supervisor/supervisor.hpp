@@ -53,6 +53,7 @@ class Supervisor {
   [[nodiscard]] msg::SimStatus lastSimStatus();
   [[nodiscard]] msg::BatonStatus lastBatonStatus();
   void onSignal();
+  void considerAbort();
   void runIsOver();
   void stopChildren();
   void enter(Stage stage, std::chrono::seconds patience);

@@ -285,7 +285,7 @@ INSTANTIATE_TEST_SUITE_P(
                  "expected a whole number of steps", "'1e-10'"},
         BadInput{"NegativeDuration", "duration_s: 8", "duration_s: -1", "duration_s", "from 0 to 1000000 s", "'-1'"},
         BadInput{"UnknownMode", "mode: lockstep", "mode: lockstp", "mode", "one of lockstep, realtime", "'lockstp'"},
-        BadInput{"RateZero", "rate: max", "rate: 0", "rate", "above 0 and up to 1000 times real time, or max", "'0'"},
+        BadInput{"RateZero", "rate: max", "rate: 0", "rate", "from 1e-07 to 1000 times real time, or max", "'0'"},
         BadInput{"RateWord", "rate: max", "rate: fast", "rate", "times real time, or max", "'fast'"},
         BadInput{"RateList", "rate: max", "rate: [max]", "rate", "times real time, or max", "a list of 1 value"},
         BadInput{"UnknownPolicy", "policy: fallback", "policy: hope", "late", "one of wait, fallback, abort", "'hope'"},
