@@ -21,8 +21,8 @@ namespace rtps = fastdds::rtps;
 namespace transport = fastdds::transport;
 
 constexpr int kMaxDomain = 232;
-constexpr std::size_t kMaxKnown = 10'000;    // of peers, and of strangers: a flood of them must not fill the memory
-constexpr int kSocketBuffer = 4 << 20;       // loopback UDP loses datagrams when a busy receiver's buffer is full
+constexpr std::size_t kMaxKnown = 10'000;  // of peers, and of strangers: a flood of them must not fill the memory
+constexpr int kSocketBuffer = 4 << 20;     // loopback UDP loses datagrams when a busy receiver's buffer is full
 
 // Discovery data of a Baton process: one field a line.
 std::string encodePeer(const Peer& peer) {
