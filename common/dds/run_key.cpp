@@ -5,7 +5,6 @@
 #include <openssl/rand.h>
 
 #include <algorithm>
-#include <charconv>
 #include <span>
 
 #include "base/error.hpp"
@@ -31,24 +30,10 @@ RunKey RunKey::fresh() {
 
 std::optional<RunKey> RunKey::parse(std::string_view text) {
   Bytes bytes{};
-  if (text.size() != 2 * bytes.size()) return std::nullopt;
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    const std::string_view digits = text.substr(2 * i, 2);
-    const auto [end, error] = std::from_chars(digits.begin(), digits.end(), bytes[i], 16);
-    if (error != std::errc() || end != digits.end()) return std::nullopt;
-  }
-  return RunKey(bytes);
+  return fromHex(text, bytes) ? std::optional(RunKey(bytes)) : std::nullopt;
 }
 
-std::string RunKey::text() const {
-  constexpr const char* kDigits = "0123456789abcdef";
-  std::string text;
-  for (const std::uint8_t byte : bytes_) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 0xF];
-  }
-  return text;
-}
+std::string RunKey::text() const { return toHex(bytes_); }
 
 GuidPrefix RunKey::marked(const GuidPrefix& prefix) const {
   GuidPrefix result = prefix;

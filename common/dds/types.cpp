@@ -11,8 +11,7 @@ GuidPrefix prefixOf(const Guid& guid) {
   return prefix;
 }
 
-namespace {
-std::string digitsOf(std::span<const std::uint8_t> bytes) {
+std::string toHex(std::span<const std::uint8_t> bytes) {
   constexpr const char* kDigits = "0123456789abcdef";
   std::string text;
   for (const std::uint8_t byte : bytes) {
@@ -21,26 +20,33 @@ std::string digitsOf(std::span<const std::uint8_t> bytes) {
   }
   return text;
 }
-}  // namespace
 
-std::string toString(const GuidPrefix& prefix) { return digitsOf(prefix); }
+bool fromHex(std::string_view text, std::span<std::uint8_t> bytes) {
+  if (text.size() != 2 * bytes.size()) return false;
+  for (std::uint8_t& byte : bytes) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + 2, byte, 16);
+    if (error != std::errc() || end != text.data() + 2) return false;
+    text.remove_prefix(2);
+  }
+  return true;
+}
+
+std::string toString(const GuidPrefix& prefix) { return toHex(prefix); }
 
 std::string toString(const Guid& guid) {
   const std::span<const std::uint8_t> bytes(guid.bytes);
   constexpr std::size_t kPrefix = std::tuple_size_v<GuidPrefix>;
-  return digitsOf(bytes.first(kPrefix)) + "." + digitsOf(bytes.subspan(kPrefix));
+  return toHex(bytes.first(kPrefix)) + "." + toHex(bytes.subspan(kPrefix));
 }
 
 std::optional<Guid> guidCalled(std::string_view text) {
-  constexpr std::size_t kDot = 2 * std::tuple_size_v<GuidPrefix>;
+  constexpr std::size_t kPrefix = std::tuple_size_v<GuidPrefix>, kDot = 2 * kPrefix;
+  if (text.size() <= kDot || text[kDot] != '.') return std::nullopt;
   Guid guid;
-  if (text.size() != 2 * guid.bytes.size() + 1 || text[kDot] != '.') return std::nullopt;
-  for (std::size_t i = 0; i < guid.bytes.size(); ++i) {
-    const char* digits = text.data() + 2 * i + (2 * i < kDot ? 0 : 1);
-    const auto [end, error] = std::from_chars(digits, digits + 2, guid.bytes[i], 16);
-    if (error != std::errc() || end != digits + 2) return std::nullopt;
-  }
-  return guid;
+  const std::span<std::uint8_t> bytes(guid.bytes);
+  const bool is_guid =
+      fromHex(text.substr(0, kDot), bytes.first(kPrefix)) && fromHex(text.substr(kDot + 1), bytes.subspan(kPrefix));
+  return is_guid ? std::optional(guid) : std::nullopt;
 }
 
 const char* toString(Transport transport) { return transport == Transport::kSharedMemory ? "shm" : "udp"; }

@@ -22,6 +22,10 @@ struct Guid {
 using GuidPrefix = std::array<std::uint8_t, 12>;
 [[nodiscard]] GuidPrefix prefixOf(const Guid& guid);
 
+/// Two digits a byte, and back; false for another text, of which nothing is to be used then.
+[[nodiscard]] std::string toHex(std::span<const std::uint8_t> bytes);
+[[nodiscard]] bool fromHex(std::string_view text, std::span<std::uint8_t> bytes);
+
 /// "0123456789abcdef01234567".
 [[nodiscard]] std::string toString(const GuidPrefix& prefix);
 /// "0123456789abcdef01234567.00000103", as DDS tools print it.
