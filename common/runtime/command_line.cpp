@@ -105,12 +105,11 @@ CLI::Option* addTransport(CLI::App& app, dds::Transport& transport) {
 
 double parseRate(const std::string& what, const std::string& text) {
   if (text == "max") return 0.0;
-  double rate = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), rate);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(rate) || rate < kMinRate) {
+  const auto rate = numberIn<double>(text);
+  if (!rate || !std::isfinite(*rate) || *rate < kMinRate) {
     throw UsageError(what + ": expected a number from 1e-7 on, or max, found '" + text + "'");
   }
-  return rate;
+  return *rate;
 }
 
 CLI::Validator notNegative() {
