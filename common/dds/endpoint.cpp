@@ -139,11 +139,11 @@ bool RawWriter::waitForAcknowledgments(int timeout_ms) {
 
 struct RawReader::Impl final : DataReaderListener {
   Impl(Participant& participant_in, const EndpointOptions& options, Callback callback_in, MatchCallback on_match_in,
-       Admission admission_in)
+       WriterFilter filter_in)
       : participant(participant_in),
         callback(std::move(callback_in)),
         on_match(std::move(on_match_in)),
-        admission(std::move(admission_in)) {
+        filter(std::move(filter_in)) {
     incoming.payload.reserve(options.max_payload);
     Participant::Impl& shared = participant.impl();
     Topic* topic = shared.topic(options.topic, options.type, options.max_payload, options.keyed);
@@ -177,8 +177,8 @@ struct RawReader::Impl final : DataReaderListener {
     }
   }
   bool isAdmitted(const Guid& writer) {
-    if (!admission || admitted.contains(writer)) return true;
-    if (!admission(writer)) return false;
+    if (!filter || admitted.contains(writer)) return true;
+    if (!filter(writer)) return false;
     admitted.insert(writer);
     return true;
   }
@@ -193,7 +193,7 @@ struct RawReader::Impl final : DataReaderListener {
   Participant& participant;
   Callback callback;
   MatchCallback on_match;
-  Admission admission;
+  WriterFilter filter;
   std::set<Guid> admitted;  // of the thread that takes samples
   std::atomic<std::uint64_t> refused{0};
   Matches matches;
@@ -203,9 +203,9 @@ struct RawReader::Impl final : DataReaderListener {
 };
 
 RawReader::RawReader(Participant& participant, const EndpointOptions& options, Callback callback,
-                     MatchCallback on_match, Admission admission)
-    : impl_(std::make_unique<Impl>(participant, options, std::move(callback), std::move(on_match),
-                                   std::move(admission))) {}
+                     MatchCallback on_match, WriterFilter filter)
+    : impl_(std::make_unique<Impl>(participant, options, std::move(callback), std::move(on_match), std::move(filter))) {
+}
 RawReader::~RawReader() = default;
 std::set<GuidPrefix> RawReader::matched() const { return impl_->matches.prefixes(); }
 std::uint64_t RawReader::refused() const { return impl_->refused; }

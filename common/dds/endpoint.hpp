@@ -37,7 +37,7 @@ struct EndpointOptions {
 /// Called when a counterpart is matched or lost, on a DDS thread.
 using MatchCallback = std::function<void()>;
 /// Whether samples of this writer are wanted; asked for each sample until the answer is yes.
-using Admission = std::function<bool(const Guid& writer)>;
+using WriterFilter = std::function<bool(const Guid& writer)>;
 
 class RawWriter {
  public:
@@ -69,7 +69,7 @@ class RawReader {
 
   /// The callback runs on a DDS thread, once a sample, in order of arrival.
   RawReader(Participant& participant, const EndpointOptions& options, Callback callback, MatchCallback on_match = {},
-            Admission admission = {});
+            WriterFilter filter = {});
   ~RawReader();
   RawReader(const RawReader&) = delete;
   RawReader& operator=(const RawReader&) = delete;

@@ -90,6 +90,13 @@ BATON_TOPICS(BATON_TOPIC_CONSTANT)
 #define BATON_TOPIC_FACTS(constant, name, type, profile, by, from) static_cast<const TopicFacts&>(constant),
 inline constexpr std::array kAll{BATON_TOPICS(BATON_TOPIC_FACTS)};
 #undef BATON_TOPIC_FACTS
+
+/// Of a topic of Baton's; nullptr for any other.
+[[nodiscard]] constexpr const TopicFacts* called(std::string_view name) {
+  const auto found = std::ranges::find(kAll, name, &TopicFacts::name);
+  return found == kAll.end() ? nullptr : &*found;
+}
+
 static_assert(std::ranges::all_of(kAll,
                                   [](const TopicFacts& topic) {
                                     return isStatusTopic(topic.name) == (topic.profile == Profile::kStatus);

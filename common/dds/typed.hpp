@@ -66,7 +66,7 @@ class Reader {
   using Callback = std::function<void(const T&, const RawSample&)>;
 
   Reader(Participant& participant, const Topic<T>& topic, Callback callback, MatchCallback on_match = {},
-         Admission admission = {})
+         WriterFilter filter = {})
       : callback_(std::move(callback)),
         raw_(
             participant, endpointOptions(topic),
@@ -77,7 +77,7 @@ class Reader {
                 ++rejected_;
               }
             },
-            std::move(on_match), std::move(admission)) {}
+            std::move(on_match), std::move(filter)) {}
 
   /// Samples that were not a message of this type.
   [[nodiscard]] std::uint64_t rejected() const { return rejected_; }

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "dds/endpoint.hpp"
 #include "dds/participant.hpp"
 #include "dds/topics.hpp"
 
@@ -27,6 +28,10 @@ class Admission {
 
   /// Any thread. Without a key everybody is heard.
   [[nodiscard]] bool admits(const dds::TopicFacts& topic, const dds::Guid& writer);
+  /// The same as a filter for a reader of that topic, which does not outlive this.
+  [[nodiscard]] dds::WriterFilter filter(const dds::TopicFacts& topic) {
+    return [this, topic](const dds::Guid& writer) { return admits(topic, writer); };
+  }
   /// It is there and says that it is of our run.
   void met(const dds::Peer& stranger);
 

@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/service_options.hpp"
 
 namespace baton {
 namespace fs = std::filesystem;
@@ -117,8 +118,9 @@ std::vector<RunInfo> activeRuns() {
 std::string keyFile(const RunInfo& info) { return info.folder + "/key"; }
 
 void makeKeyWhenMissing(const RunInfo& info) {
-  const std::string file = keyFile(info), text = dds::RunKey::fresh().text() + "\n";
+  const std::string file = keyFile(info);
   if (fs::exists(file)) return;
+  const std::string text = dds::RunKey::fresh().text() + "\n";
   const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   const bool is_written =
       descriptor >= 0 && write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
@@ -134,9 +136,15 @@ dds::RunKey readKey(const std::string& file) {
   return *key;
 }
 
-std::optional<dds::RunKey> keyOf(const RunInfo& info) {
+dds::ParticipantOptions operatorOf(const RunInfo& info) {
   const std::string file = keyFile(info);
-  return fs::exists(file) ? std::optional(readKey(file)) : std::nullopt;
+  return {.domain = info.domain,
+          .partition = info.cell + "/" + info.run,
+          .cell = info.cell,
+          .run = info.run,
+          .service = kOperatorPrefix + std::to_string(getpid()),
+          .transport = info.transport,
+          .key = fs::exists(file) ? std::optional(readKey(file)) : std::nullopt};
 }
 
 namespace {

@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "dds/run_key.hpp"
-#include "dds/types.hpp"
+#include "dds/participant.hpp"
 #include "runtime/scenario.hpp"
 
 namespace baton {
@@ -54,8 +53,8 @@ class CellLock {
 [[nodiscard]] std::string keyFile(const RunInfo& info);
 void makeKeyWhenMissing(const RunInfo& info);
 [[nodiscard]] dds::RunKey readKey(const std::string& file);
-/// Of an operator: without a key where there is none.
-[[nodiscard]] std::optional<dds::RunKey> keyOf(const RunInfo& info);
+/// Of a process of ours that watches or operates a run; without a key where the run has none.
+[[nodiscard]] dds::ParticipantOptions operatorOf(const RunInfo& info);
 
 /// Where a recording that is asked for goes. Over the wire comes only a name; that it leads into another folder than
 /// that of the run's recording is said in the run's own folder, where only the run's owner writes.

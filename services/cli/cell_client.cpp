@@ -13,13 +13,7 @@ namespace baton {
 
 CellClient::CellClient(const RunInfo& info)
     : info_(info),
-      participant_(dds::ParticipantOptions{.domain = info.domain,
-                                           .partition = info.cell + "/" + info.run,
-                                           .cell = info.cell,
-                                           .run = info.run,
-                                           .service = kOperatorPrefix + std::to_string(getpid()),
-                                           .transport = info.transport,
-                                           .key = keyOf(info)},
+      participant_(operatorOf(info),
                    [this](const dds::Peer&) {
                      const std::lock_guard lock(mutex_);
                      changed_.notify_all();

@@ -88,7 +88,7 @@ std::vector<T> CellClient::collect(const dds::Topic<T>& topic, const std::functi
         samples.push_back(message);
         changed_.notify_all();
       },
-      {}, [&](const dds::Guid& writer) { return admission_.admits(topic, writer); });
+      {}, admission_.filter(topic));
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, patience, [&] { return enough(samples); });
   return samples;
@@ -119,7 +119,7 @@ std::vector<Answer> CellClient::askAll(const dds::Topic<Request>& request_topic,
         if (is_answer(message)) answers.push_back(message);
         changed_.notify_all();
       },
-      wake, [&](const dds::Guid& writer) { return admission_.admits(answer_topic, writer); });
+      wake, admission_.filter(answer_topic));
   dds::Writer<Request> writer(participant_, request_topic, wake);
   // Writer and reader are matched at different times: both have to be before a request is worth sending.
   std::unique_lock lock(mutex_);

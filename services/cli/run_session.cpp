@@ -172,31 +172,18 @@ std::optional<ExitCode> RunSession::follow(const std::function<void(const RunPro
                                            const std::function<bool(const msg::SimStatus&)>& until) {
   std::mutex mutex;
   RunProgress latest;
-  dds::Participant participant({.domain = info_.domain,
-                                .partition = info_.cell + "/" + info_.run,
-                                .cell = info_.cell,
-                                .run = info_.run,
-                                .service = kOperatorPrefix + std::to_string(getpid()),
-                                .transport = info_.transport,
-                                .key = keyOf(info_)});
+  dds::Participant participant(operatorOf(info_));
   Admission admission(participant, false, [](const std::string&) {});  // the run itself tells
-  const auto only = [&](const dds::TopicFacts& topic) {
-    return [&](const dds::Guid& writer) { return admission.admits(topic, writer); };
+  const auto keepIn = [&mutex](auto& latest_word) {
+    return [&mutex, &latest_word](const auto& message, const dds::RawSample&) {
+      const std::lock_guard lock(mutex);
+      latest_word = message;
+    };
   };
-  const dds::Reader<msg::SimStatus> sim(
-      participant, dds::topics::kSimStatus,
-      [&](const msg::SimStatus& message, const dds::RawSample&) {
-        const std::lock_guard lock(mutex);
-        latest.sim = message;
-      },
-      {}, only(dds::topics::kSimStatus));
-  const dds::Reader<msg::RecorderStatus> recorder(
-      participant, dds::topics::kRecorderStatus,
-      [&](const msg::RecorderStatus& message, const dds::RawSample&) {
-        const std::lock_guard lock(mutex);
-        latest.recorder = message;
-      },
-      {}, only(dds::topics::kRecorderStatus));
+  const dds::Reader<msg::SimStatus> sim(participant, dds::topics::kSimStatus, keepIn(latest.sim), {},
+                                        admission.filter(dds::topics::kSimStatus));
+  const dds::Reader<msg::RecorderStatus> recorder(participant, dds::topics::kRecorderStatus, keepIn(latest.recorder),
+                                                  {}, admission.filter(dds::topics::kRecorderStatus));
   int passed_on = 0;
   for (;;) {
     int how = 0;

@@ -17,13 +17,6 @@ std::string qosYaml(const dds::DiscoveredWriter& writer) {
          "\nownership: " + word(writer.exclusive_ownership) + "\nkeyed: " + word(writer.keyed) + "\n";
 }
 
-/// Of a topic that Baton itself has; nullptr for any other.
-const dds::TopicFacts* factsOf(const std::string& topic) {
-  const auto found =
-      std::ranges::find_if(dds::topics::kAll, [&](const dds::TopicFacts& one) { return topic == one.name; });
-  return found == dds::topics::kAll.end() ? nullptr : &*found;
-}
-
 }  // namespace
 
 TopicReaders::TopicReaders(Service& service, TopicSelection selection, dds::GuidPrefix own, Sink sink)
@@ -93,7 +86,7 @@ bool TopicReaders::isWanted(const dds::DiscoveredWriter& writer) {
                        " is not recorded: control characters in the name of its topic or type");
     return false;
   }
-  const dds::TopicFacts* facts = factsOf(writer.topic);
+  const dds::TopicFacts* facts = dds::topics::called(writer.topic);
   return facts == nullptr || service_.admission().admits(*facts, writer.guid);
 }
 
@@ -130,6 +123,7 @@ void TopicReaders::writerFound(const dds::DiscoveredWriter& writer) {
     has_rivals_ = true;
   auto topic = std::make_unique<Topic>();
   topic->options = options;
+  const dds::TopicFacts* facts = dds::topics::called(writer.topic);
   try {
     topic->reader = std::make_unique<dds::RawReader>(
         service_.participant(), options,
@@ -137,9 +131,7 @@ void TopicReaders::writerFound(const dds::DiscoveredWriter& writer) {
           if (dds::prefixOf(sample.writer) != own_ && isFor(index, sample.writer)) sink_(index, sample);
         },
         [this] { service_.matchesChanged(); },
-        [this, facts = factsOf(writer.topic)](const dds::Guid& guid) {
-          return facts == nullptr || service_.admission().admits(*facts, guid);
-        });
+        facts == nullptr ? dds::WriterFilter{} : service_.admission().filter(*facts));
   } catch (const Error& error) {
     {
       const std::lock_guard facts_lock(facts_mutex_);

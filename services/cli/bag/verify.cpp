@@ -193,9 +193,8 @@ std::set<std::string> strangersIn(const std::vector<Part>& parts, const Ledger& 
   std::set<std::string> found;
   for (const Part& part : parts) {
     for (const auto& [id, channel] : part.reader->channels()) {
-      const auto facts =
-          std::ranges::find_if(dds::topics::kAll, [&](const auto& topic) { return channel.topic == topic.name; });
-      if (facts == dds::topics::kAll.end() || facts->written_by == dds::WrittenBy::kOperators) continue;
+      const dds::TopicFacts* facts = dds::topics::called(channel.topic);
+      if (facts == nullptr || facts->written_by == dds::WrittenBy::kOperators) continue;
       if (!channel.metadata.contains("service")) continue;  // nobody asked who it was
       const std::string service = mcap::valueOf(channel.metadata, "service");
       const auto writer = dds::guidCalled(mcap::valueOf(channel.metadata, "writer"));

@@ -21,13 +21,7 @@ class Killer {
  public:
   Killer(const RunInfo& info, const std::optional<Kill>& kill)
       : kill_(kill),
-        participant_({.domain = info.domain,
-                      .partition = info.cell + "/" + info.run,
-                      .cell = info.cell,
-                      .run = info.run,
-                      .service = kOperatorPrefix + std::to_string(getpid()),
-                      .transport = info.transport,
-                      .key = keyOf(info)}),
+        participant_(operatorOf(info)),
         request_(participant_, dds::topics::kSimRequest),
         services_(participant_, dds::topics::kServiceStatus,
                   [this](const msg::ServiceStatus& status, const dds::RawSample&) { onService(status); }),
