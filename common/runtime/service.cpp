@@ -113,7 +113,7 @@ void Service::giveWayToElders() {
 
 void Service::peerJoined(const dds::Peer& peer) {
   if (peer.is_stranger) return admission_.met(peer);
-  greet();
+  announcer_.greet();
   checkBarrier();
   if (!gave_way_ && isRival(peer)) {
     event(msg::SEVERITY_WARNING, "intruder", "a second " + peer.service + " of run " + peer.run + "; this one goes on");
@@ -132,27 +132,6 @@ void Service::giveWay(const std::string& why) {
 
 void Service::matchesChanged() {
   asio::post(executor_, [this] { checkBarrier(); });
-}
-
-/// Whoever joins says so before it listens: what DDS answers at once may be lost, and is not said again for seconds.
-void Service::greet() {
-  if (std::exchange(is_greeting_, true)) return;  // one word for all who come at this time
-  greeting_.expires_after(std::chrono::milliseconds(100));
-  greeting_.async_wait([this](const boost::system::error_code& error) {
-    is_greeting_ = false;
-    if (!error) participant_.announce();
-  });
-}
-
-/// Somebody it waits for may not have heard of it. Ever more seldom: many that start together must not drown each
-/// other.
-void Service::announceUntilReady(std::chrono::milliseconds pause) {
-  announcement_.expires_after(pause);
-  announcement_.async_wait([this, pause](const boost::system::error_code& error) {
-    if (error || ready_ || gave_way_) return;
-    participant_.announce();
-    announceUntilReady(std::min<std::chrono::milliseconds>(2 * pause, std::chrono::seconds(4)));
-  });
 }
 
 void Service::checkBarrier() {
@@ -347,7 +326,7 @@ void Service::leave() {
 ExitCode Service::run() {
   awaitSignal();
   matchesChanged();
-  announceUntilReady(std::chrono::milliseconds(200));
+  announcer_.repeatUntil([this] { return ready_ || gave_way_; });
   executor_.run();
   const std::lock_guard lock(mutex_);
   is_closed_ = true;

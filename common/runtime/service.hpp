@@ -27,6 +27,7 @@
 #include "dds/typed.hpp"
 #include "messages/loop.hpp"
 #include "runtime/admission.hpp"
+#include "runtime/announcer.hpp"
 #include "runtime/barrier.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/service_options.hpp"
@@ -133,8 +134,6 @@ class Service {
   void tellLosses();
   void strikeWhenReached(std::uint64_t step);
   void checkBarrier();
-  void announceUntilReady(std::chrono::milliseconds pause);
-  void greet();
   void publishManifest();
   void sayManifest();
   void onRewindMessage(const msg::Rewind& rewind);
@@ -148,11 +147,9 @@ class Service {
   boost::asio::signal_set signals_{executor_, SIGINT, SIGTERM};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{executor_.get_executor()};
   boost::asio::steady_timer end_limit_{executor_};
-  boost::asio::steady_timer announcement_{executor_};
-  boost::asio::steady_timer greeting_{executor_};
-  bool is_greeting_ = false;
   std::mutex mutex_;
   dds::Participant participant_;
+  Announcer announcer_{executor_, participant_};
   Admission admission_;
   Barrier barrier_{participant_};
   std::vector<std::shared_ptr<void>> endpoints_;  // destroyed before the participant, in reverse order of opening
@@ -228,10 +225,7 @@ void Service::input(const dds::Topic<T>& topic, const std::vector<std::string>& 
         const std::lock_guard lock(mutex_);
         if (!is_closed_) handler(message, sample);
       },
-      [this] { matchesChanged(); },
-      [this, facts = static_cast<const dds::TopicFacts&>(topic)](const dds::Guid& writer) {
-        return admission_.admits(facts, writer);
-      });
+      [this] { matchesChanged(); }, admission_.filter(topic));
   require(
       topic.name, [raw = &reader->raw()] { return raw->matched(); }, writers);
   losses_.push_back([raw = reader.get(), facts = static_cast<const dds::TopicFacts&>(topic)] {
