@@ -1,4 +1,4 @@
-/// Text from outside: names and words that somebody else chose, before they are shown or used.
+/// Checks of text from files, command lines and samples, before it is shown or used.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace baton {
   return result;
 }
 
-/// A name that leads to no other folder, with the ending (".mcap") behind at least one character.
+/// A file name without a folder that ends in `ending` (".mcap") and has at least one character before it.
 [[nodiscard]] inline bool isFileName(std::string_view name, std::string_view ending) {
   return name.size() > ending.size() && name.ends_with(ending) && name.front() != '.' &&
          name.find('/') == std::string_view::npos && !hasControlCharacters(name);

@@ -112,11 +112,11 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
   }
 
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
-  // Whoever is discovered is answered at once; repeating it is for datagrams that were lost. Each participant tells
-  // every other, so the price grows with the square of their number: announce() is for who still looks for somebody.
-  // The lease outlives a process that is stopped for a while and then goes on; processes that end are noticed by
-  // whoever launched them, not by DDS. It is as long as this for another reason: a lease that is looked at while its
-  // participant leaves ends the process (an assertion in Fast DDS 2.9.1), and the looks come a lease apart.
+  // DDS answers a new participant at once; the period is for lost datagrams. Each participant sends to every other, so
+  // the traffic grows with the square of their number. A service that still waits for a peer calls announce(). The
+  // lease is longer than any stop of a process (SIGSTOP); the supervisor notices processes that end, not DDS. Another
+  // reason for a long lease: Fast DDS 2.9.1 checks a lease once per lease duration, and an assertion ends the process
+  // when its participant leaves during the check.
   discovery.leaseDuration_announcementperiod = {3, 0};
   discovery.leaseDuration = {3600, 0};
   discovery.initial_announcements.count = 5;
@@ -283,7 +283,7 @@ bool Participant::isSecondCopy(const Guid& writer) const {
 const Peer& Participant::self() const { return impl_->self; }
 
 void Participant::announce() {
-  // A change of its data makes a participant tell everybody. Behind the fields nothing is read.
+  // DDS sends changed user data to every participant. decodePeer() ignores what follows the last field.
   const std::string data = encodePeer(impl_->self) + "\n" + std::to_string(++impl_->announcements);
   DomainParticipantQos qos = impl_->participant->get_qos();
   qos.user_data().data_vec({data.begin(), data.end()});
