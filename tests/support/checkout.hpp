@@ -5,11 +5,8 @@
 
 namespace baton::test {
 
-inline std::filesystem::path checkoutFolder() {
-  return std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
-}
-
+[[nodiscard]] std::filesystem::path checkoutFolder();
 /// What users are given: scenarios, robots, figures.
-inline std::filesystem::path deployFolder() { return checkoutFolder() / "deploy"; }
+[[nodiscard]] std::filesystem::path deployFolder();
 
 }  // namespace baton::test
