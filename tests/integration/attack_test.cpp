@@ -1,277 +1,95 @@
-// What any user of the machine can do to somebody else's run over DDS without forging RTPS: it is told of, and changes
-// neither the bytes of the loop, nor the recording's verdict, nor the exit code. The stranger sees every state and says
-// its piece at each.
+// What any user of the machine can do to another user's run over DDS without forging RTPS: the run reports it, and
+// neither the bytes of the loop, nor the recording's verdict, nor the exit code change.
 #include <gtest/gtest.h>
 
-#include <array>
-#include <functional>
-#include <limits>
+#include <chrono>
+#include <iostream>
+#include <map>
 #include <mutex>
+#include <numeric>
+#include <random>
 
-#include "runtime/cell.hpp"
-#include "support/live_run.hpp"
+#include "runtime/paths.hpp"
+#include "support/attacks.hpp"
 #include "support/short_contact.hpp"
-#include "support/stranger.hpp"
 
 namespace baton::test {
 namespace {
 
-struct Attack {
-  const char* name;
-  const char* claims;  // who it says it is
-  std::function<void(Stranger&, const msg::PlantState&, const LiveRun&)> say;
+/// Strangers that answer every state of one run, each under the name of the service it pretends to be.
+class Strangers {
+ public:
+  /// @param choose  which attacks follow a state.
+  Strangers(const LiveRun& run, std::span<const Attack> attacks, std::function<std::vector<std::size_t>()> choose)
+      : run_(run), attacks_(attacks), choose_(std::move(choose)) {
+    const std::string id = run.status.at("run");
+    for (const Attack& attack : attacks) by_claim_.try_emplace(attack.claims, run.bench.domain(), id, attack.claims);
+    eyes_ = std::make_unique<dds::Reader<msg::PlantState>>(
+        by_claim_.begin()->second.participant(), dds::topics::kPlantState,
+        [this](const msg::PlantState& state, const dds::RawSample& sample) {
+          if (!isOurs(sample)) attack(state, choose_());
+        });
+  }
+  /// Makes all writers and waits until each stranger has a reader in the run.
+  [[nodiscard]] bool areHeard() {
+    std::vector<std::size_t> all(attacks_.size());
+    std::iota(all.begin(), all.end(), 0);
+    return eventually([&] {
+      attack({}, all);
+      return !eyes_->raw().matched().empty() &&
+             std::ranges::all_of(by_claim_, [](const auto& one) { return one.second.isHeard(); });
+    });
+  }
+  void stop() {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+
+ private:
+  [[nodiscard]] bool isOurs(const dds::RawSample& sample) const {
+    return std::ranges::any_of(by_claim_, [&](const auto& one) { return one.second.hasWritten(sample); });
+  }
+  void attack(const msg::PlantState& state, const std::vector<std::size_t>& chosen) {
+    const std::lock_guard lock(mutex_);
+    if (is_over_) return;
+    for (const std::size_t i : chosen) attacks_[i].say(by_claim_.at(attacks_[i].claims), state, run_);
+  }
+
+  const LiveRun& run_;
+  std::span<const Attack> attacks_;
+  std::function<std::vector<std::size_t>()> choose_;
+  std::mutex mutex_;
+  bool is_over_ = false;
+  std::map<std::string, Stranger> by_claim_;
+  std::unique_ptr<dds::Reader<msg::PlantState>> eyes_;
 };
 
-template <class Topic, class Fill>
-auto saying(const Topic& topic, const Fill& fill) {
-  return [topic, fill](Stranger& stranger, const msg::PlantState& state, const LiveRun& run) {
-    const auto message = fill(state, run);
-    stranger.say(topic, message);
-  };
+/// @param expected_hash  of a run in lockstep; "" in real time, where the bytes depend on the time.
+void expectUndisturbed(const std::string& scenario, const std::string& expected_hash, std::span<const Attack> attacks,
+                       std::function<std::vector<std::size_t>()> choose) {
+  const Bench bench;
+  const LiveRun run(bench, scenario, {"--paused"});
+  Strangers strangers(run, attacks, std::move(choose));
+  ASSERT_TRUE(strangers.areHeard());
+  ASSERT_EQ(bench.baton({"sim", "resume"}).exit_code, 0);
+  const nlohmann::json result = run.result();
+  strangers.stop();
+  EXPECT_EQ(result.at("state"), "finished") << result;
+  EXPECT_EQ(result.at("exit_code"), 0) << result;
+  EXPECT_TRUE(result.at("recording").at("complete")) << result;
+  if (!expected_hash.empty()) {
+    EXPECT_EQ(result.at("chain_hash"), expected_hash);
+  }
+  EXPECT_EQ(bench.baton({"bag", "verify", run.recording}).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(bench.folder() / "authorized_keys"));
+  const Finished events = bench.baton({"bag", "cat", run.recording, "--topics", "event"});
+  EXPECT_NE(events.out.find("stranger"), std::string::npos) << "no event names it: " << events.out;
 }
 
-msg::Contact contactAt(std::uint64_t step, double force) {
-  msg::Contact contact;
-  contact.step(step);
-  contact.force({0.0, 0.0, force});
-  contact.penetration(1.0);
-  return contact;
+std::string hashLeftAlone(const std::string& scenario) {
+  const Bench bench;
+  return bench.batonJson({"run", bench.write("alone.yaml", scenario), "--json"}).at("chain_hash");
 }
-
-msg::ServiceStatus statusOf(const std::string& name, const std::string& role, msg::ServiceState state, int pid) {
-  msg::ServiceStatus status;
-  status.name(name);
-  status.role(role);
-  status.state(state);
-  status.pid(pid);
-  status.text("said a stranger");
-  return status;
-}
-
-msg::SimRequest simRequest(msg::SimAction action) {
-  msg::SimRequest request;
-  request.request_id(1);
-  request.action(action);
-  return request;
-}
-
-using State = const msg::PlantState&;
-using Run = const LiveRun&;
-
-const Attack kAttacks[] = {
-    {"contact", "environment",
-     saying(dds::topics::kContact, [](State state, Run) { return contactAt(state.step(), 50.0); })},
-    {"contact_ahead", "environment",
-     saying(dds::topics::kContact, [](State state, Run) { return contactAt(state.step() + 1, 50.0); })},
-    {"contact_nan", "environment",
-     saying(dds::topics::kContact,
-            [](State state, Run) { return contactAt(state.step() + 1, std::numeric_limits<double>::quiet_NaN()); })},
-    {"contact_and_manifest", "friend",
-     [](Stranger& stranger, State state, Run) {
-       stranger.say(dds::topics::kContact, contactAt(state.step() + 1, 50.0));
-       msg::ServiceManifest manifest;
-       manifest.name("friend");
-       stranger.say(dds::topics::kServiceManifest, manifest);
-     }},
-    {"reference", "trajectory",
-     saying(dds::topics::kReference,
-            [](State state, Run) {
-              msg::Reference reference;
-              reference.step(state.step() + 2);
-              reference.position({1.0, 1.0, 1.0});
-              return reference;
-            })},
-    {"plant_state", "plant",
-     saying(dds::topics::kPlantState,
-            [](State state, Run) {
-              msg::PlantState forged = state;
-              forged.step(state.step() + 1);
-              forged.position({1.0, 1.0, 1.0});
-              return forged;
-            })},
-    {"joint_command", "tracking",
-     saying(dds::topics::kJointCommand,
-            [](State state, Run) {
-              msg::JointCommand command;
-              command.step(state.step());
-              command.controller(state.holder());
-              command.effort({10.0, 10.0, 10.0});
-              return command;
-            })},
-    {"takeover", "tracking",
-     [](Stranger& stranger, State state, Run run) {
-       const std::string holder = state.holder().c_str();
-       msg::ServiceStatus ready = statusOf(holder, "controller", msg::SERVICE_READY, 1);
-       stranger.say(dds::topics::kServiceStatus, ready);
-       stranger.say(dds::topics::kServiceStatus,
-                    statusOf(holder, "controller", msg::SERVICE_FAILED, run.pidOf(holder)));
-       msg::ControllerStatus standby;
-       standby.name(holder);
-       standby.state(msg::CONTROLLER_STANDBY);
-       standby.step(state.step());
-       stranger.say(dds::topics::kControllerStatus, standby);
-       msg::SwapRequest swap;
-       swap.request_id(777);
-       swap.target("pd");
-       swap.force(true);
-       stranger.say(dds::topics::kSwapRequest, swap);
-       msg::JointCommand command;
-       command.step(state.step());
-       command.controller(holder);
-       command.effort({10.0, 10.0, 10.0});
-       stranger.say(dds::topics::kJointCommand, command);
-     }},
-    {"environment_failed", "environment",
-     saying(dds::topics::kServiceStatus,
-            [](State, Run run) {
-              return statusOf("environment", "environment", msg::SERVICE_FAILED, run.pidOf("environment"));
-            })},
-    {"plant_failed", "supervisor",
-     saying(dds::topics::kServiceStatus,
-            [](State, Run run) { return statusOf("plant", "plant", msg::SERVICE_FAILED, run.pidOf("plant")); })},
-    {"another_plant", "trajectory",
-     saying(dds::topics::kServiceStatus,
-            [](State, Run run) {
-              msg::ServiceStatus ready =
-                  statusOf("trajectory", "trajectory", msg::SERVICE_READY, run.pidOf("trajectory"));
-              ready.plant({1, 2, 3});
-              return ready;
-            })},
-    {"finished", "plant",
-     saying(dds::topics::kSimStatus,
-            [](State state, Run) {
-              msg::SimStatus status;
-              status.state(msg::SIM_STATE_FINISHED);
-              status.step(state.step());
-              return status;
-            })},
-    {"aborted", "plant",
-     saying(dds::topics::kSimStatus,
-            [](State state, Run) {
-              msg::SimStatus status;
-              status.state(msg::SIM_STATE_ABORTED);
-              status.step(state.step());
-              return status;
-            })},
-    {"rewind", "plant",
-     saying(dds::topics::kRewind,
-            [](State state, Run) {
-              msg::Rewind rewind;
-              rewind.take(1);
-              rewind.phase(msg::REWIND_COMMIT);
-              rewind.at_step(state.step());
-              return rewind;
-            })},
-    {"rewind_ack", "pd",
-     saying(dds::topics::kRewindAck,
-            [](State, Run) {
-              msg::RewindAck ack;
-              ack.take(1);
-              ack.phase(msg::REWIND_COMMIT);
-              ack.name("pd");
-              return ack;
-            })},
-    {"recorder_status", "recorder",
-     saying(dds::topics::kRecorderStatus,
-            [](State state, Run) {
-              msg::RecorderStatus status;
-              status.state(msg::RECORDER_FAILED);
-              status.acknowledged_step(state.step() + 1000);
-              return status;
-            })},
-    {"swap_plan", "plant",
-     saying(dds::topics::kSwapPlan,
-            [](State state, Run) {
-              msg::SwapPlan plan;
-              plan.plan_id(99);
-              plan.phase(msg::SWAP_COMMIT);
-              plan.outgoing(state.holder());
-              plan.incoming("pd");
-              plan.at_step(state.step() + 1);
-              plan.hard(true);
-              return plan;
-            })},
-    {"swap_ack", "force",
-     saying(dds::topics::kSwapAck,
-            [](State, Run) {
-              msg::SwapAck ack;
-              ack.plan_id(1);
-              ack.phase(msg::SWAP_PREPARE);
-              ack.controller("impedance");
-              ack.ready(false);
-              return ack;
-            })},
-    {"swap_request", "operator-1",
-     saying(dds::topics::kSwapRequest,
-            [](State state, Run) {
-              msg::SwapRequest request;
-              request.request_id(state.step() + 1);
-              request.target("pd");
-              request.force(true);
-              return request;
-            })},
-    {"sim_stop", "operator-1", saying(dds::topics::kSimRequest, [](State, Run) { return simRequest(msg::SIM_STOP); })},
-    {"sim_pause", "supervisor",
-     saying(dds::topics::kSimRequest, [](State, Run) { return simRequest(msg::SIM_PAUSE); })},
-    {"sim_reset", "operator-1",
-     saying(dds::topics::kSimRequest, [](State, Run) { return simRequest(msg::SIM_RESET); })},
-    {"launch_stop", "operator-1",
-     saying(dds::topics::kLaunchRequest,
-            [](State, Run) {
-              msg::LaunchRequest request;
-              request.request_id(1);
-              request.action(msg::LAUNCH_STOP);
-              request.name("pd");
-              return request;
-            })},
-    {"parameters", "operator-1",
-     saying(dds::topics::kParameterRequest,
-            [](State state, Run) {
-              msg::ParameterRequest request;
-              request.request_id(state.step() + 1);
-              request.controller("tracking");
-              return request;
-            })},
-    {"record_start", "operator-1",
-     saying(dds::topics::kRecordRequest,
-            [](State, Run run) {
-              msg::RecordRequest request;
-              request.request_id(1);
-              request.action(msg::RECORD_START);
-              request.path((run.bench.folder() / "authorized_keys").string());
-              return request;
-            })},
-    {"record_stop", "operator-1",
-     saying(dds::topics::kRecordRequest,
-            [](State, Run) {
-              msg::RecordRequest request;
-              request.request_id(1);
-              request.action(msg::RECORD_STOP);
-              return request;
-            })},
-    {"manifest", "environment",
-     saying(dds::topics::kServiceManifest,
-            [](State, Run) {
-              msg::ServiceManifest manifest;
-              manifest.name("environment");
-              return manifest;
-            })},
-    {"event", "plant",
-     saying(dds::topics::kEvent,
-            [](State, Run) {
-              msg::Event event;
-              event.severity(msg::SEVERITY_ERROR);
-              event.service("plant");
-              event.kind("failover");
-              return event;
-            })},
-    {"another_type", "environment",
-     [](Stranger& stranger, State, Run) { stranger.sayRaw("contact", "somebody::Else", std::array<std::byte, 8>{}); }},
-    {"control_characters", "beacon",
-     [](Stranger& stranger, State, Run) {
-       stranger.sayRaw("\nssh-ed25519 AAAA\n", "somebody::Else", std::array<std::byte, 8>{});
-     }},
-};
 
 struct Mode {
   const char* name;
@@ -285,60 +103,41 @@ const Mode kModes[] = {
 
 class Attacked : public ::testing::TestWithParam<std::tuple<Attack, Mode>> {};
 
-/// Of the scenario, left alone: of a run in lockstep the bytes are determined.
-std::string hashLeftAlone() {
-  static const std::string hash = [] {
-    const Bench bench;
-    return bench.batonJson({"run", bench.write("alone.yaml", shortContact()), "--json"}).at("chain_hash");
-  }();
-  return hash;
-}
-
-TEST_P(Attacked, TheRunIsAsIfNobodyHadBeenThere) {
+TEST_P(Attacked, TheRunIsAsIfLeftAlone) {
   const auto& [attack, mode] = GetParam();
-  const bool is_determined = std::string(mode.name) == "lockstep";
-  // Before the stranger is there: a run that has not begun believes in a plant that says it is older.
-  const std::string expected_hash = is_determined ? hashLeftAlone() : "";
-  const Bench bench;
-  const LiveRun run(bench, mode.scenario, {"--paused"});
-  const std::string id = run.status.at("run");
-  Stranger stranger(bench.domain(), id, attack.claims);
-  std::mutex mutex;
-  bool is_over = false;
-  const dds::Reader<msg::PlantState> eyes(stranger.participant(), dds::topics::kPlantState,
-                                          [&](const msg::PlantState& state, const dds::RawSample& sample) {
-                                            if (stranger.hasWritten(sample)) return;  // from within say()
-                                            const std::lock_guard lock(mutex);
-                                            if (!is_over) attack.say(stranger, state, run);
-                                          });
-  // Its first words make its writers; it is heard before the arm moves.
-  ASSERT_TRUE(eventually([&] {
-    const std::lock_guard lock(mutex);
-    attack.say(stranger, {}, run);
-    return stranger.isHeard() && !eyes.raw().matched().empty();
-  }));
-  ASSERT_EQ(bench.baton({"sim", "resume"}).exit_code, 0);
-  const nlohmann::json result = run.result();
-  {
-    const std::lock_guard lock(mutex);
-    is_over = true;
-  }
-  EXPECT_EQ(result.at("state"), "finished") << result;
-  EXPECT_EQ(result.at("exit_code"), 0) << result;
-  EXPECT_TRUE(result.at("recording").at("complete")) << result;
-  if (is_determined) {
-    EXPECT_EQ(result.at("chain_hash"), expected_hash);
-  }
-  EXPECT_EQ(bench.baton({"bag", "verify", run.recording}).exit_code, 0);
-  EXPECT_FALSE(std::filesystem::exists(bench.folder() / "authorized_keys"));
-  const Finished events = bench.baton({"bag", "cat", run.recording, "--topics", "event"});
-  EXPECT_NE(events.out.find("stranger"), std::string::npos) << "nobody told of it: " << events.out;
+  static const std::string alone = hashLeftAlone(shortContact());
+  expectUndisturbed(mode.scenario, mode.name == std::string("lockstep") ? alone : "", std::span(&attack, 1),
+                    [] { return std::vector<std::size_t>{0}; });
 }
 
-INSTANTIATE_TEST_SUITE_P(By, Attacked, ::testing::Combine(::testing::ValuesIn(kAttacks), ::testing::ValuesIn(kModes)),
+INSTANTIATE_TEST_SUITE_P(By, Attacked,
+                         ::testing::Combine(::testing::ValuesIn(attacks().begin(), attacks().end()),
+                                            ::testing::ValuesIn(kModes)),
                          [](const auto& param) {
                            return std::string(std::get<0>(param.param).name) + "_" + std::get<1>(param.param).name;
                          });
+
+/// Up to three attacks a state, by all strangers together. BATON_ATTACK_MINUTES=60 repeats it with the demo for an
+/// hour; BATON_ATTACK_SEED chooses the same attacks again.
+TEST(AttackedAtRandom, TheRunIsAsIfLeftAlone) {
+  const char* minutes = std::getenv("BATON_ATTACK_MINUTES");
+  const char* seed_text = std::getenv("BATON_ATTACK_SEED");
+  const auto seed = seed_text == nullptr ? std::random_device()() : static_cast<unsigned>(std::stoul(seed_text));
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(minutes == nullptr ? 0 : std::stoi(minutes));
+  const std::string scenario = minutes == nullptr ? shortContact() : readFile(deployFolder() / "scenarios/demo.yaml");
+  const std::string alone = hashLeftAlone(scenario);
+  std::mt19937 random(seed);
+  const auto choose = [&random] {
+    std::vector<std::size_t> chosen(random() % 4);
+    for (std::size_t& one : chosen) one = random() % attacks().size();
+    return chosen;
+  };
+  int runs = 0;
+  do {
+    expectUndisturbed(scenario, alone, attacks(), choose);
+    std::cout << ++runs << " runs, seed " << seed << std::endl;
+  } while (!HasFailure() && std::chrono::steady_clock::now() < end);
+}
 
 }  // namespace
 }  // namespace baton::test

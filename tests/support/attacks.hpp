@@ -1,0 +1,21 @@
+/// What a process without the key of a run can say to it over DDS, without forged RTPS.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "support/live_run.hpp"
+#include "support/stranger.hpp"
+
+namespace baton::test {
+
+struct Attack {
+  const char* name;
+  const char* claims;  // the service it pretends to be
+  /// Called at each state that the plant publishes, with that state.
+  std::function<void(Stranger&, const msg::PlantState&, const LiveRun&)> say;
+};
+
+[[nodiscard]] std::span<const Attack> attacks();
+
+}  // namespace baton::test
