@@ -72,19 +72,25 @@ Token IdlLexer::read() {
                   return isLetter(c) || isDigit(c) || c == '.' || is_exponent_sign;
                 }));
   }
-  if (first == '"') {
-    const std::size_t end = rest_.find_first_of("\"\n\\", 1);
-    if (end == std::string_view::npos || rest_[end] == '\n') failAt(line_, "a closing '\"'", "the end of the line");
-    if (rest_[end] == '\\') failAt(line_, "a string without escapes", "'\\'");
-    rest_.remove_prefix(1);
-    const Token token = take(Token::Kind::kString, end - 1);
-    rest_.remove_prefix(1);
-    return token;
-  }
+  if (first == '"' || first == '\'') return string(first);
   if (rest_.starts_with("::")) return take(Token::Kind::kSign, 2);
-  if (std::string_view("{}[]()<>;:,=@+-").find(first) != std::string_view::npos) return take(Token::Kind::kSign, 1);
+  if (std::string_view("{}[]()<>;:,=@+-*/%|&^~").find(first) != std::string_view::npos)
+    return take(Token::Kind::kSign, 1);
   if (first == '#') failAt(line_, "a text without preprocessor lines", "'#'");
   failAt(line_, "IDL", "a character that has no meaning in it (code " + std::to_string(static_cast<int>(first)) + ")");
+}
+
+/// What is escaped in it stays as it is written: only units are shown, and those have nothing to escape.
+Token IdlLexer::string(char quote) {
+  std::size_t end = 1;
+  while (end < rest_.size() && rest_[end] != quote && rest_[end] != '\n') end += rest_[end] == '\\' ? 2 : 1;
+  if (end >= rest_.size() || rest_[end] == '\n') {
+    failAt(line_, "a closing '" + std::string(1, quote) + "'", "the end of the line");
+  }
+  rest_.remove_prefix(1);
+  const Token token = take(Token::Kind::kString, end - 1);
+  rest_.remove_prefix(1);
+  return token;
 }
 
 bool IdlLexer::accept(std::string_view text) {

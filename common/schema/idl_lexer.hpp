@@ -10,7 +10,7 @@ namespace baton::schema {
 struct Token {
   enum class Kind { kWord, kNumber, kString, kSign, kEnd };
   Kind kind = Kind::kEnd;
-  std::string_view text{};  // of a string without its quotes
+  std::string_view text{};  // of a string or a character without its quotes
   std::size_t line = 1;
 };
 
@@ -48,6 +48,7 @@ class IdlLexer {
  private:
   void skipBlanks();
   [[nodiscard]] Token take(Token::Kind kind, std::size_t length);
+  [[nodiscard]] Token string(char quote);
   [[nodiscard]] Token read();
 
   std::string_view rest_;

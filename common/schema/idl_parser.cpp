@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -42,8 +44,17 @@ constexpr std::array kPrimitives{
     Primitive{"string", Kind::kString, 4},
 };
 
-// Annotations that change nothing in a payload, beside @unit and @key.
-constexpr std::array<std::string_view, 8> kSkipped{"final", "min", "max", "range", "default", "id", "topic", "nested"};
+// Annotations that put a member elsewhere than its place among the others, or nowhere.
+constexpr std::array<std::string_view, 3> kMoving{"optional", "non_serialized", "nonserialized"};
+// An enum with fewer bits takes one byte or two in the payloads of some vendors and four in those of others.
+constexpr std::int64_t kMostBitsOfShortEnum = 16, kBitsOfEnum = 32;
+
+/// Older IDL of some vendors writes @Key and @Extensibility(FINAL_EXTENSIBILITY).
+std::string lowerCase(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
 
 std::string atMost(std::uint64_t limit, const std::string& what) {
   return "at most " + std::to_string(limit) + " " + what;
@@ -68,37 +79,106 @@ class IdlParser {
   struct Annotations {
     std::string unit;
     bool is_key = false;
+    std::optional<std::int64_t> value;  // of an enumerator
+    bool is_declaration = false;        // what follows says what an annotation is
   };
 
   Annotations annotations() {
     Annotations all;
     while (lexer_.accept("@")) {
-      const std::string name = lexer_.token().kind == Token::Kind::kWord ? std::string(lexer_.token().text) : "";
-      if (name == "key") {
-        all.is_key = true;
-      } else if (name != "unit" && std::ranges::count(kSkipped, name) == 0) {
-        lexer_.fail("an annotation that changes nothing in a payload (final, key, unit, ...)");
-      }
-      lexer_.advance();
+      const std::string name = annotationName();
       if (name == "unit") {
         all.unit = unit();
-      } else if (lexer_.accept("(")) {
-        while (!lexer_.accept(")")) {
-          if (lexer_.token().kind == Token::Kind::kEnd || lexer_.is("(") || lexer_.is(";")) lexer_.fail("')'");
-          lexer_.advance();
-        }
+      } else if (name == "value") {
+        all.value = enumerationValue();
+      } else if (name == "bit_bound") {
+        bitBound();
+      } else if (name == "extensibility") {
+        expectPlain(extensibility());
+      } else if (std::ranges::count(kMoving, name) > 0) {
+        lexer_.fail("a member that always has its place in a payload", "@" + name + ", which is not supported");
+      } else {
+        all.is_key = all.is_key || name == "key";
+        all.is_declaration = all.is_declaration || name == "annotation";
+        expectPlain(name);
+        if (lexer_.accept("(")) skipTo(")", "(");
       }
     }
     return all;
   }
 
+  /// Without the vendor's or module's name before it.
+  std::string annotationName() {
+    std::string name;
+    do {
+      if (lexer_.token().kind != Token::Kind::kWord) lexer_.fail("an annotation's name");
+      name = lowerCase(lexer_.token().text);
+      lexer_.advance();
+    } while (lexer_.accept("::"));
+    return name;
+  }
+
+  /// Final and appendable types are the same in plain CDR.
+  void expectPlain(const std::string& extensibility) const {
+    if (extensibility.starts_with("mutable")) {
+      lexer_.fail("a final or an appendable type", "a mutable one, whose parameter lists are not supported");
+    }
+  }
+
+  std::string extensibility() {
+    openArgument();
+    const std::string kind = lexer_.token().kind == Token::Kind::kWord ? lowerCase(lexer_.token().text) : "";
+    for (const char* known : {"final", "appendable", "extensible", "mutable"}) {
+      if (!kind.starts_with(known)) continue;
+      lexer_.advance();
+      lexer_.expect(")");
+      return kind;
+    }
+    lexer_.fail("FINAL, APPENDABLE or MUTABLE");
+  }
+
+  void bitBound() {
+    openArgument();
+    const std::int64_t bits = names_.integer(1, 64);
+    lexer_.expect(")");
+    if (bits > kMostBitsOfShortEnum && bits <= kBitsOfEnum) return;
+    lexer_.fail("an enum of four bytes", "@bit_bound(" + std::to_string(bits) + "), which is not supported");
+  }
+
+  std::int64_t enumerationValue() {
+    openArgument();
+    const std::int64_t value = anyEnumerator();
+    lexer_.expect(")");
+    return value;
+  }
+  std::int64_t anyEnumerator() {
+    return names_.integer(std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max());
+  }
+
   std::string unit() {
-    lexer_.expect("(");
+    openArgument();
     if (lexer_.token().kind != Token::Kind::kString) lexer_.fail("the unit as a string");
     std::string text(lexer_.token().text);
     lexer_.advance();
     lexer_.expect(")");
     return text;
+  }
+
+  /// An annotation's only argument may be called by its name.
+  void openArgument() {
+    lexer_.expect("(");
+    if (lexer_.accept("value")) lexer_.expect("=");
+  }
+
+  /// Up to the end of what was opened, with all that is opened within.
+  void skipTo(std::string_view end, std::string_view begin) {
+    for (std::size_t open = 1; open > 0; lexer_.advance()) {
+      if (lexer_.token().kind == Token::Kind::kEnd || (end == ")" && lexer_.is(";"))) {
+        lexer_.fail("'" + std::string(end) + "'");
+      }
+      open += lexer_.is(begin) ? 1 : 0;
+      open -= lexer_.is(end) ? 1 : 0;
+    }
   }
 
   const Type* add(Type type) {
@@ -206,20 +286,23 @@ class IdlParser {
   void enumeration() {
     Type type{.kind = Kind::kEnum, .name = names_.claim(lexer_.name("an enum's name")), .least_bytes = 4};
     std::set<std::string> full_names{type.name};
+    std::int64_t value = 0;
     lexer_.expect("{");
     do {
       if (type.enumerators.size() == kMaxEnumerators) lexer_.fail(atMost(kMaxEnumerators, "enumerators"), "more");
+      const Annotations marks = annotations();
       const std::string name = lexer_.name("an enumerator");
       if (!full_names.insert(names_.claim(name)).second) lexer_.fail("a new name", "'" + name + "' again");
-      type.enumerators.push_back(name);
+      value = lexer_.accept("=") ? anyEnumerator() : marks.value.value_or(value);
+      if (!type.enumerators.emplace(value++, name).second)
+        lexer_.fail("each value once", "that of '" + name + "' again");
     } while (lexer_.accept(","));
     lexer_.expect("}");
     const Type* added = finish(std::move(type));
-    std::int64_t value = 0;
-    for (const std::string& name : added->enumerators) {
+    for (const auto& [number, name] : added->enumerators) {
       // IDL has them beside the enum; some also say Enum::NAME.
-      names_.addConstant(names_.claim(name), {added, value});
-      names_.addConstant(added->name + "::" + name, {added, value++});
+      names_.addConstant(names_.claim(name), {added, number});
+      names_.addConstant(added->name + "::" + name, {added, number});
     }
   }
 
@@ -244,6 +327,7 @@ class IdlParser {
     Type type{.kind = Kind::kUnion, .name = names_.claim(lexer_.name("a union's name"))};
     lexer_.expect("switch");
     lexer_.expect("(");
+    (void)annotations();
     const Type* discriminator = typeName();
     const Kind kind = discriminator->kind;
     if (kind != Kind::kEnum && kind != Kind::kBoolean && !isInteger(kind)) {
@@ -291,8 +375,11 @@ class IdlParser {
   }
 
   void definition(unsigned depth) {
-    (void)annotations();
-    if (lexer_.accept("module")) {
+    if (annotations().is_declaration) {
+      (void)lexer_.name("an annotation's name");
+      lexer_.expect("{");
+      skipTo("}", "{");
+    } else if (lexer_.accept("module")) {
       module(depth);
     } else if (lexer_.accept("struct")) {
       structure();

@@ -1,11 +1,13 @@
 /// Reads the self-contained OMG IDL text that recordings carry (MCAP schema encoding "omgidl").
 ///
-/// Understood: modules; structs; enums, which count from 0; unions on an enum, a boolean or an integer; sequences and
-/// strings, bounded or not; arrays of any number of dimensions; typedefs; constants, as bounds and labels; boolean,
-/// octet, char, int8 to uint64, short to unsigned long long, float, double. Of annotations @unit and @key are kept;
-/// @final, @min, @max, @range, @default, @id, @topic and @nested change nothing in a payload and are skipped.
-/// Everything else is refused, above all what would change how a payload is read (@appendable, @mutable, @optional,
-/// @bit_bound, inheritance, wide characters, long double, maps, bit masks).
+/// Understood: modules; structs; enums, with values of their own or not; unions on an enum, a boolean or an integer;
+/// sequences and strings, bounded or not; arrays of any number of dimensions; typedefs; constants, as bounds and
+/// labels; boolean, octet, char, int8 to uint64, short to unsigned long long, float, double. Of annotations @unit, @key
+/// and @value are kept, and those that change how a payload is read are refused by name: @mutable, @optional,
+/// @non_serialized, and
+/// @bit_bound of an enum, where vendors differ. All others (@final and @appendable, which are the same in plain CDR;
+/// @id, @default, @verbatim, @external, a vendor's own) are skipped, and so is the declaration of an annotation.
+/// Everything else is refused: inheritance, wide characters, long double, maps, bit masks.
 #pragma once
 
 #include <string_view>

@@ -12,6 +12,22 @@ namespace {
 constexpr std::size_t kHeader = 4;
 constexpr std::size_t kMostFilling = 3;  // RTPS carries multiples of four bytes
 
+/// What stands where plain CDR was expected, by the two bytes of an encapsulation header (RTPS 2.5, 10.5).
+std::string encodingName(unsigned encoding) {
+  switch (encoding) {
+    case 2:
+    case 3: return "a parameter list, as of a mutable type";
+    case 4: return "XML";
+    case 6:
+    case 7: return "XCDR2";
+    case 8:
+    case 9: return "XCDR2, delimited, as of an appendable type";
+    case 10:
+    case 11: return "XCDR2, a parameter list, as of a mutable type";
+    default: return "which no standard names";
+  }
+}
+
 bool isPlain(Kind kind) { return kind <= Kind::kEnum; }
 
 /// Opaque bytes come whole.
@@ -34,8 +50,8 @@ MessageReader::MessageReader(const Type& type, Bytes payload) : type_(type) {
   }
   const auto encoding = static_cast<unsigned>(payload[0]) << 8 | static_cast<unsigned>(payload[1]);
   if (encoding > 1) {
-    throw PayloadError("expected plain CDR (encoding 0 or 1), found encoding " + std::to_string(encoding) +
-                       (encoding == 6 || encoding == 7 ? ", XCDR2" : ""));
+    throw PayloadError("expected plain CDR (encoding 0 or 1), found encoding " + std::to_string(encoding) + ", " +
+                       encodingName(encoding) + ", which is not supported");
   }
   is_little_endian_ = encoding == 1;
   body_ = payload.subspan(kHeader);
@@ -98,7 +114,7 @@ Value MessageReader::valueOf(const Type& type) {
     case Kind::kUint32: return std::uint64_t{number<std::uint32_t>()};
     case Kind::kInt64: return number<std::int64_t>();
     case Kind::kUint64: return number<std::uint64_t>();
-    case Kind::kEnum: return std::int64_t{number<std::uint32_t>()};
+    case Kind::kEnum: return std::int64_t{number<std::int32_t>()};
     case Kind::kFloat: return std::bit_cast<float>(number<std::uint32_t>());
     case Kind::kDouble: return std::bit_cast<double>(number<std::uint64_t>());
     case Kind::kChar: return std::string_view(reinterpret_cast<const char*>(take(1).data()), 1);

@@ -4,8 +4,8 @@
 ///   schema::MessageReader message(type, payload);
 ///   for (schema::Item item; message.next(item);) use(item);
 ///
-/// Payloads are plain CDR (XCDR1) of either byte order, behind the 4-byte encapsulation header. XCDR2 and parameter
-/// lists are refused.
+/// Payloads are plain CDR (XCDR1) of either byte order, behind the 4-byte encapsulation header; final and appendable
+/// types are alike in it. XCDR2, in which appendable ones are delimited, and parameter lists are refused by name.
 #pragma once
 
 #include <array>

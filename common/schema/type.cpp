@@ -5,9 +5,8 @@
 namespace baton::schema {
 
 std::string_view enumeratorName(const Type& type, std::int64_t value) {
-  // They count from 0 upwards.
-  const auto index = static_cast<std::uint64_t>(value);
-  return index < type.enumerators.size() ? std::string_view(type.enumerators[index]) : std::string_view();
+  const auto found = type.enumerators.find(value);
+  return found == type.enumerators.end() ? std::string_view() : found->second;
 }
 
 const Member* chosenMember(const Type& type, std::int64_t discriminator) {

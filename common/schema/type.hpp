@@ -55,15 +55,15 @@ inline constexpr std::string_view kDiscriminator = "$discriminator";
 /// A struct and a union have at least one member, an array at least one element, so every value takes a byte or more.
 struct Type {
   Kind kind = Kind::kBoolean;
-  std::string name{};                      // of a struct, union or enum, with its modules: "baton::msg::PlantState"
-  std::vector<Member> members{};           // struct: in their order; union: the discriminator, then the cases
-  std::vector<Label> labels{};             // union
-  std::size_t default_member = 0;          // union: chosen by all other values; 0 for none
-  std::vector<std::string> enumerators{};  // enum: [value]
-  const Type* element = nullptr;           // sequence and array; an array of arrays has the first index outside
-  std::uint64_t bound = 0;                 // array: elements; string and sequence: at most so many, 0 for no bound
-  unsigned depth = 0;                      // of types within it
-  std::uint64_t least_bytes = 0;           // no value takes fewer in a payload
+  std::string name{};              // of a struct, union or enum, with its modules: "baton::msg::PlantState"
+  std::vector<Member> members{};   // struct: in their order; union: the discriminator, then the cases
+  std::vector<Label> labels{};     // union
+  std::size_t default_member = 0;  // union: chosen by all other values; 0 for none
+  std::map<std::int64_t, std::string> enumerators{};  // enum: by value
+  const Type* element = nullptr;  // sequence and array; an array of arrays has the first index outside
+  std::uint64_t bound = 0;        // array: elements; string and sequence: at most so many, 0 for no bound
+  unsigned depth = 0;             // of types within it
+  std::uint64_t least_bytes = 0;  // no value takes fewer in a payload
 };
 
 /// The name of an enumerator; empty when no enumerator has the value.

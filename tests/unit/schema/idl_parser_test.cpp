@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <string>
 
 #include "msg/idl_text.hpp"
@@ -160,6 +161,64 @@ TEST(IdlParser, SkipsCommentsAndAnnotationsThatChangeNothing) {
   EXPECT_TRUE(constants.names().empty());
 }
 
+TEST(IdlParser, FinalAndAppendableTypesAreTheSame) {
+  for (const char* mark :
+       {"@final", "@appendable", "@extensibility(FINAL)", "@extensibility(APPENDABLE)", "@extensibility(value = FINAL)",
+        "@Extensibility(EXTENSIBLE_EXTENSIBILITY)", "@Extensibility(FINAL_EXTENSIBILITY)", "@dds::final"}) {
+    for (const char* kind : {"struct S { double m; };", "enum E { A }; struct S { E m; };",
+                             "union U switch (long) { case 1: long a; }; struct S { U m; };"}) {
+      EXPECT_EQ(errorOf(std::string(mark) + " " + kind), "") << mark;
+    }
+  }
+  EXPECT_NE(errorOf("@extensibility(OTHER) struct S { long a; };"), "");
+  EXPECT_NE(errorOf("@extensibility struct S { long a; };"), "");
+}
+
+TEST(IdlParser, AnnotationsOfOthersAreSkipped) {
+  const TypeSet types = parseIdl(
+      "@annotation mine { string text default \"a }\"; enum K { X, Y }; };\n"
+      "@verbatim(language = \"c++\", placement = BEFORE_DECLARATION, text = \"#include <a>\\n\" \"// \\\"x) ;\")\n"
+      "@data_representation(XCDR1 | XCDR2) @default_nested @autoid(HASH) @mine(text = \"b\") @RTI::transfer(MODE)\n"
+      "@nested(FALSE) @topic(name = \"t\", platform = \"*\") @bit_bound(32) @ignore_literal_names\n"
+      "struct S {\n"
+      "  @Key @ID(0x10) @must_understand @hashid(\"m\") double m;\n"
+      "  @default((1 << 3) * 2) @min(-1) @external @try_construct(USE_DEFAULT) long n;\n"
+      "  @default('\\'') char c;\n"
+      "};\n"
+      "@final union U switch (@key long) { case 1: @id(7) long a; };");
+  const Type& s = *types.find("S");
+  ASSERT_EQ(s.members.size(), 3U);
+  EXPECT_TRUE(s.members[0].is_key);
+  EXPECT_EQ(s.least_bytes, 13U);
+  EXPECT_NE(types.find("U"), nullptr);
+}
+
+TEST(IdlParser, EnumeratorsHaveTheirOwnValues) {
+  const TypeSet types = parseIdl(
+      "const long TEN = 10;"
+      "enum E { A, @value(5) B, C, @default_literal @value(value = -3) D, F = 40, @value(TEN) G };"
+      "union U switch (E) { case B: long b; case E::D: double d; };");
+  const Type& e = *types.find("E");
+  for (const auto& [value, name] :
+       std::map<std::int64_t, std::string>{{0, "A"}, {5, "B"}, {6, "C"}, {-3, "D"}, {40, "F"}, {10, "G"}, {1, ""}}) {
+    EXPECT_EQ(enumeratorName(e, value), name);
+  }
+  EXPECT_EQ(chosenMember(*types.find("U"), -3)->name, "d");
+  EXPECT_NE(errorOf("enum E { @value(1) A, @value(1) B };"), "");
+  EXPECT_NE(errorOf("enum E { @value(5000000000) A };"), "");
+}
+
+TEST(IdlParser, WhatChangesAPayloadIsNamed) {
+  EXPECT_EQ(errorOf("@extensibility(MUTABLE) struct S { long a; };"),
+            "line 1: expected a final or an appendable type, found a mutable one, whose parameter lists are not "
+            "supported");
+  EXPECT_EQ(errorOf("struct S { @optional long a; };"),
+            "line 1: expected a member that always has its place in a payload, found @optional, which is not "
+            "supported");
+  EXPECT_EQ(errorOf("@bit_bound(8) enum E { A };"),
+            "line 1: expected an enum of four bytes, found @bit_bound(8), which is not supported");
+}
+
 TEST(IdlParser, SaysTheLineWhatWasExpectedAndWhatWasFound) {
   EXPECT_EQ(errorOf("struct S {\n  long a\n};"), "line 3: expected ';', found '}'");
   EXPECT_EQ(errorOf("struct S { T a; };"), "line 1: expected a type that was declared before, found 'T'");
@@ -172,10 +231,12 @@ TEST(IdlParser, SaysTheLineWhatWasExpectedAndWhatWasFound) {
 
 TEST(IdlParser, RefusesWhatWouldChangeAPayload) {
   for (const char* text :
-       {"@appendable struct S { long a; };", "@mutable struct S { long a; };", "struct S { @optional long a; };",
-        "@bit_bound(8) enum E { A };", "enum E { @value(3) A };", "struct A { long a; }; struct B : A { long b; };",
-        "struct S { wstring a; };", "struct S { long double a; };", "struct S { map<long, long> a; };",
-        "bitmask B { X };", "struct S;", "struct S { any a; };"}) {
+       {"@mutable struct S { long a; };", "@extensibility(MUTABLE) struct S { long a; };",
+        "@Extensibility(MUTABLE_EXTENSIBILITY) struct S { long a; };", "struct S { @optional long a; };",
+        "struct S { @key @Optional long a; };", "struct S { @non_serialized long a; };", "@bit_bound(8) enum E { A };",
+        "@bit_bound(16) enum E { A };", "struct A { long a; }; struct B : A { long b; };", "struct S { wstring a; };",
+        "struct S { long double a; };", "struct S { map<long, long> a; };", "bitmask B { X };", "struct S;",
+        "struct S { any a; };"}) {
     EXPECT_NE(errorOf(text), "") << text;
   }
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -242,7 +243,36 @@ TEST(MessageReader, RefusesOtherEncodings) {
                           std::byte{0},
                           std::byte{0},
                           std::byte{0}};
-    EXPECT_NE(errorOf(*types.find("S"), payload).find("plain CDR"), std::string::npos) << encoding;
+    const std::string error = errorOf(*types.find("S"), payload);
+    EXPECT_NE(error.find("plain CDR"), std::string::npos) << encoding;
+    const bool is_list = encoding == 2 || encoding == 3 || encoding == 10 || encoding == 11;
+    EXPECT_EQ(error.find("parameter list") != std::string::npos, is_list) << error;
+    EXPECT_EQ(error.find("XCDR2") != std::string::npos, encoding >= 6 && encoding <= 11) << error;
+    EXPECT_EQ(error.find("delimited") != std::string::npos, encoding == 8 || encoding == 9) << error;
+  }
+}
+
+TEST(MessageReader, ReadsAppendableTypesOfOtherVendorsInEitherByteOrder) {
+  const TypeSet types = parseIdl(
+      "@extensibility(APPENDABLE) struct Inner { octet a; double b; };"
+      "enum E { @value(-2) LOW, @value(7) HIGH };"
+      "@extensibility(FINAL) struct S { @key long n; sequence<Inner> inner; E e; };");
+  for (const bool is_little_endian : {true, false}) {
+    Rewriter out(is_little_endian);
+    out.number(std::int32_t{3});
+    out.number(std::uint32_t{1});
+    out.number(std::uint8_t{9});
+    out.number(2.5);
+    out.number(std::int32_t{-2});
+    MessageReader reader(*types.find("S"), out.bytes);
+    std::map<std::string, Value> values;
+    for (Item item; reader.next(item);) {
+      if (item.what == Item::What::kValue) values[reader.path()] = item.value;
+    }
+    EXPECT_EQ(std::get<std::int64_t>(values.at("n")), 3);
+    EXPECT_EQ(std::get<double>(values.at("inner[0].b")), 2.5);
+    EXPECT_EQ(std::get<std::int64_t>(values.at("e")), -2);
+    EXPECT_EQ(enumeratorName(*types.find("S")->members[2].type, -2), "LOW");
   }
 }
 
