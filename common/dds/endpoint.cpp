@@ -118,8 +118,7 @@ RawWriter::RawWriter(Participant& participant, const EndpointOptions& options, M
 RawWriter::~RawWriter() = default;
 
 bool RawWriter::write(std::span<const std::byte> payload) noexcept {
-  rtps::WriteParams params;
-  return impl_->write(payload, params);
+  return write(payload, impl_->participant.impl().clock.now());
 }
 
 bool RawWriter::write(std::span<const std::byte> payload, std::int64_t source_timestamp_ns) noexcept {

@@ -47,7 +47,8 @@ class RawWriter {
   RawWriter(const RawWriter&) = delete;
   RawWriter& operator=(const RawWriter&) = delete;
 
-  /// Sends a payload, encapsulation header included. Never blocks. Returns false when DDS refuses it.
+  /// Sends a payload, encapsulation header included, with the time of the participant's clock. Never blocks. Returns
+  /// false when DDS refuses it.
   [[nodiscard]] bool write(std::span<const std::byte> payload) noexcept;
   /// The same with the source timestamp of the original, for replays.
   [[nodiscard]] bool write(std::span<const std::byte> payload, std::int64_t source_timestamp_ns) noexcept;

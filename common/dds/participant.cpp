@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
@@ -140,15 +139,11 @@ Guid toGuid(const rtps::GUID_t& guid) {
 }
 
 Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_in)
-    : on_peer(std::move(on_peer_in)), key(options.key) {
+    : on_peer(std::move(on_peer_in)), key(options.key), clock(options.clock) {
   if (options.domain < 0 || options.domain > kMaxDomain) {
     throw UsageError("DDS domain: expected 0 to 232, found " + std::to_string(options.domain));
   }
-  const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
-  self = {.cell = options.cell,
-          .run = options.run,
-          .service = options.service,
-          .started_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(since_epoch).count()};
+  self = {.cell = options.cell, .run = options.run, .service = options.service, .started_ns = clock.now()};
   participant = fastdds::createParticipant(options.domain, participantQos(options, self), this,
                                            [this](rtps::GuidPrefix_t& prefix) {
                                              if (!key) return;
@@ -280,6 +275,7 @@ bool Participant::isSecondCopy(const Guid& writer) const {
   });
 }
 
+const WallClock& Participant::clock() const { return impl_->clock; }
 const Peer& Participant::self() const { return impl_->self; }
 
 void Participant::announce() {

@@ -10,6 +10,7 @@
 
 #include "dds/run_key.hpp"
 #include "dds/types.hpp"
+#include "dds/wall_clock.hpp"
 
 namespace baton::dds {
 
@@ -22,6 +23,7 @@ struct ParticipantOptions {
   std::string service;  // name of the service, unique in the run
   Transport transport = Transport::kUdp;
   std::optional<RunKey> key{};  // of the run; without one, everybody is taken for who they say they are
+  WallClock clock{};            // of the run: what is sent has its time stamps
 };
 
 /// A process of Baton in the domain, as its discovery data tell.
@@ -29,7 +31,7 @@ struct Peer {
   std::string cell;
   std::string run;
   std::string service;
-  std::int64_t started_ns = 0;  // since the epoch, by its own clock
+  std::int64_t started_ns = 0;  // since the epoch, by the clock of its run
   GuidPrefix prefix{};
   bool is_stranger = false;  // claims to be of our run, and does not have its key
   bool operator==(const Peer&) const = default;
@@ -76,6 +78,8 @@ class Participant {
   /// Whether a sample comes from a second copy of a service that has not given way yet. Not for services that may be
   /// started again: a process that was killed is remembered for the length of its lease.
   [[nodiscard]] bool isSecondCopy(const Guid& writer) const;
+  /// What is sent has its time stamps.
+  [[nodiscard]] const WallClock& clock() const;
   /// This process as others see it.
   [[nodiscard]] const Peer& self() const;
   /// Tells everybody once more that it is there: a datagram may have been lost. One thread at a time.

@@ -24,6 +24,7 @@ struct Participant::Impl final : fastdds::DiscoveryListener {
 
   PeerCallback on_peer;
   std::optional<RunKey> key;
+  const WallClock clock;
   Peer self;
   std::uint64_t announcements = 0;
   fastdds::dds::DomainParticipant* participant = nullptr;

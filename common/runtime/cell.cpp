@@ -37,7 +37,8 @@ std::optional<RunInfo> readInfo(const fs::path& file) {
                    .scenario = json.at("scenario"),
                    .folder = json.at("folder"),
                    .recording = json.at("recording"),
-                   .supervisor_pid = json.at("supervisor_pid")};
+                   .supervisor_pid = json.at("supervisor_pid"),
+                   .clock = dds::WallClock(json.at("clock_offset_ns").get<std::int64_t>())};
   } catch (const std::exception&) {
     return std::nullopt;  // being written, or from a crash in the middle of writing
   }
@@ -51,7 +52,8 @@ std::string asText(const RunInfo& info) {
                                        {"scenario", info.scenario},
                                        {"folder", info.folder},
                                        {"recording", info.recording},
-                                       {"supervisor_pid", info.supervisor_pid}});
+                                       {"supervisor_pid", info.supervisor_pid},
+                                       {"clock_offset_ns", info.clock.offset()}});
 }
 
 /// Locks of an open file, of which one can ask without taking them.
@@ -144,7 +146,8 @@ dds::ParticipantOptions operatorOf(const RunInfo& info) {
           .run = info.run,
           .service = kOperatorPrefix + std::to_string(getpid()),
           .transport = info.transport,
-          .key = fs::exists(file) ? std::optional(readKey(file)) : std::nullopt};
+          .key = fs::exists(file) ? std::optional(readKey(file)) : std::nullopt,
+          .clock = info.clock};
 }
 
 namespace {

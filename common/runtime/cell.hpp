@@ -22,6 +22,7 @@ struct RunInfo {
   std::string folder;     // logs, result
   std::string recording;  // empty: none
   int supervisor_pid = 0;
+  dds::WallClock clock{};
 };
 
 /// Held by the supervisor for as long as its run lives.

@@ -103,6 +103,12 @@ CLI::Option* addTransport(CLI::App& app, dds::Transport& transport) {
       ->default_str(dds::toString(transport));
 }
 
+CLI::Option* addClock(CLI::App& app, dds::WallClock& clock) {
+  return app.add_option_function<std::int64_t>(
+      "--clock-offset", [&clock](const std::int64_t& offset_ns) { clock = dds::WallClock(offset_ns); },
+      "ns from the machine's steady clock to the run's wall clock (default: as the wall clock is now)");
+}
+
 double parseRate(const std::string& what, const std::string& text) {
   if (text == "max") return 0.0;
   const auto rate = numberIn<double>(text);

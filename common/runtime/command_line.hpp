@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "dds/types.hpp"
+#include "dds/wall_clock.hpp"
 #include "runtime/scheduling.hpp"
 
 namespace baton {
@@ -24,6 +25,8 @@ CLI::Option* addCell(CLI::App& app, std::string& cell);
 CLI::Option* addDomain(CLI::App& app, int& domain);
 /// --transport: udp or shm.
 CLI::Option* addTransport(CLI::App& app, dds::Transport& transport);
+/// --clock-offset: the clock of a run that has begun, so that this process counts the same time.
+CLI::Option* addClock(CLI::App& app, dds::WallClock& clock);
 /// A rate as people write it: seconds per second, or max, which is 0. Throws UsageError, saying `what` it was for.
 [[nodiscard]] double parseRate(const std::string& what, const std::string& text);
 /// For numbers that are finite and not negative; CLI's own check lets NaN pass.

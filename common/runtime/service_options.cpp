@@ -14,7 +14,8 @@ dds::ParticipantOptions ServiceOptions::participant() const {
           .run = run,
           .service = name,
           .transport = transport,
-          .key = key_file.empty() ? std::nullopt : std::optional(readKey(key_file))};
+          .key = key_file.empty() ? std::nullopt : std::optional(readKey(key_file)),
+          .clock = clock};
 }
 
 bool parseServiceOptions(int argc, char** argv, const std::string& role, ServiceOptions& options) {
@@ -31,6 +32,7 @@ bool parseServiceOptions(int argc, char** argv, const std::string& role, Service
   addScheduling(app, options.scheduling);
   app.add_option("--key", options.key_file, "file with the key of the run: only who has it is heard");
   app.add_flag("--open", options.is_open, "requests are taken from anybody");
+  addClock(app, options.clock);
   bool no_recording = false;
   app.add_flag("--no-recording", no_recording, "no recorder takes part in this run");
   if (role == "controller") {
@@ -51,11 +53,12 @@ bool parseServiceOptions(int argc, char** argv, const std::string& role, Service
 }
 
 std::vector<std::string> toArguments(const ServiceOptions& options) {
-  std::vector<std::string> arguments{"--scenario",  options.scenario_file,
-                                     "--cell",      options.cell,
-                                     "--run",       options.run,
-                                     "--domain",    std::to_string(options.domain),
-                                     "--transport", dds::toString(options.transport)};
+  std::vector<std::string> arguments{"--scenario",     options.scenario_file,
+                                     "--cell",         options.cell,
+                                     "--run",          options.run,
+                                     "--domain",       std::to_string(options.domain),
+                                     "--transport",    dds::toString(options.transport),
+                                     "--clock-offset", std::to_string(options.clock.offset())};
   if (!options.robot_file.empty()) arguments.insert(arguments.end(), {"--robot", options.robot_file});
   if (!options.checkpoint.empty()) arguments.insert(arguments.end(), {"--checkpoint", options.checkpoint});
   for (std::string& argument : toArguments(options.scheduling)) arguments.push_back(std::move(argument));

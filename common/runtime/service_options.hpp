@@ -29,6 +29,7 @@ struct ServiceOptions {
   bool supervised = false;     // plant, recorder: a supervisor takes part, who must hear how the run goes
   std::string key_file;        // with the run's key; empty: everybody is heard
   bool is_open = false;        // requests are taken from anybody
+  dds::WallClock clock{};      // of the run
 
   /// Throws UnavailableError when the key cannot be read.
   [[nodiscard]] dds::ParticipantOptions participant() const;

@@ -149,12 +149,13 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
   makeKeyWhenMissing(info_);
   if (is_recorded && request.out.empty()) info_.recording = info_.folder + "/" + scenario.name + ".mcap";
 
-  std::vector<std::string> arguments{"--scenario",  info_.scenario,
-                                     "--cell",      info_.cell,
-                                     "--run",       info_.run,
-                                     "--domain",    std::to_string(info_.domain),
-                                     "--transport", dds::toString(info_.transport),
-                                     "--restarts",  std::to_string(request.restarts)};
+  std::vector<std::string> arguments{"--scenario",     info_.scenario,
+                                     "--cell",         info_.cell,
+                                     "--run",          info_.run,
+                                     "--domain",       std::to_string(info_.domain),
+                                     "--transport",    dds::toString(info_.transport),
+                                     "--restarts",     std::to_string(request.restarts),
+                                     "--clock-offset", std::to_string(info_.clock.offset())};
   if (!request.checkpoint.empty()) arguments.insert(arguments.end(), {"--checkpoint", request.checkpoint});
   for (std::string& argument : toArguments(request.scheduling)) arguments.push_back(std::move(argument));
   if (request.paused) arguments.emplace_back("--paused");

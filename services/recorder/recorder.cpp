@@ -12,7 +12,7 @@ constexpr std::size_t kWakeSamples = 1024;
 
 Recorder::Recorder(Service& service)
     : service_(service),
-      queue_(kQueueBytes, kWakeSamples),
+      queue_(kQueueBytes, kWakeSamples, service.participant().clock()),
       topics_(service, {service.scenario().recording.topics, service.scenario().recording.except},
               service.participant().self().prefix,
               [this](std::uint32_t topic, const dds::RawSample& sample) { (void)queue_.push(topic, sample); }),

@@ -6,7 +6,7 @@
 namespace baton {
 
 bool SampleQueue::push(std::uint32_t topic, const dds::RawSample& sample) {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const std::int64_t now_ns = clock_.now();
   bool wake = false;
   {
     const std::lock_guard lock(mutex_);
@@ -16,7 +16,7 @@ bool SampleQueue::push(std::uint32_t topic, const dds::RawSample& sample) {
       drop(topic, sample);
       return false;
     }
-    last_log_time_ns_ = std::max(last_log_time_ns_, std::int64_t{std::chrono::nanoseconds(now).count()});
+    last_log_time_ns_ = std::max(last_log_time_ns_, now_ns);
     pending_.entries.push_back({.topic = topic,
                                 .sequence = sample.sequence,
                                 .log_time_ns = last_log_time_ns_,

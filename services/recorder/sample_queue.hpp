@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dds/types.hpp"
+#include "dds/wall_clock.hpp"
 
 namespace baton {
 
@@ -42,8 +43,9 @@ class SampleQueue {
   };
 
   /// @param max_bytes payload bytes held before samples are dropped.  @param wake_entries how many entries wake the
-  /// writer before its time.
-  SampleQueue(std::size_t max_bytes, std::size_t wake_entries) : max_bytes_(max_bytes), wake_entries_(wake_entries) {}
+  /// writer before its time.  @param clock  of the log times.
+  SampleQueue(std::size_t max_bytes, std::size_t wake_entries, const dds::WallClock& clock = {})
+      : max_bytes_(max_bytes), wake_entries_(wake_entries), clock_(clock) {}
 
   /// Returns false when the queue is full and the sample is dropped, and with it all that follow until the next take():
   /// what is missing of a writer then lies in one piece. Once closed, it takes no notice of samples. The log time is
@@ -68,6 +70,7 @@ class SampleQueue {
 
   std::size_t max_bytes_;
   std::size_t wake_entries_;
+  const dds::WallClock clock_;
   std::mutex mutex_;
   std::condition_variable wake_;
   Batch pending_;

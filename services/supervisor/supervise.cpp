@@ -39,6 +39,7 @@ ExitCode supervise(int argc, char** argv) {
   app.add_flag("--record-later", record_later, "the recorder waits for `record start`");
   app.add_flag("--paused", starts_paused, "wait for `sim resume` before the first step");
   app.add_flag("--open", is_open, "requests are taken from anybody");
+  addClock(app, info.clock);
   if (!parseCommandLine(app, argc, argv)) return ExitCode::kOk;
   if (info.run.empty()) info.run = newRunId();
   info.folder = runFolder(info.run).string();
@@ -73,6 +74,7 @@ ExitCode supervise(int argc, char** argv) {
   options.scheduling = scheduling;
   options.key_file = keyFile(info);
   options.is_open = is_open;
+  options.clock = info.clock;
   Service service(options, std::move(scenario));
   held.release();
   Supervisor supervisor(service, deployment);

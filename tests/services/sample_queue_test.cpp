@@ -52,6 +52,21 @@ TEST(SampleQueue, SamplesComeOutAsTheyWentIn) {
   }
 }
 
+TEST(SampleQueue, LogTimesAreThoseOfTheClockOfTheRun) {
+  const dds::WallClock clock(1'000'000'000'000'000'000);  // which the machine's wall clock need not agree with
+  SampleQueue queue(1 << 20, 1, clock);
+  const std::int64_t before = clock.now();
+  push(queue, 0, 1);
+  push(queue, 0, 2);
+  const std::int64_t after = clock.now();
+  SampleQueue::Batch batch;
+  ASSERT_TRUE(queue.take(batch, kNoWait));
+  ASSERT_EQ(batch.entries.size(), 2u);
+  EXPECT_LE(before, batch.entries[0].log_time_ns);
+  EXPECT_LE(batch.entries[0].log_time_ns, batch.entries[1].log_time_ns);
+  EXPECT_LE(batch.entries[1].log_time_ns, after);
+}
+
 TEST(SampleQueue, ABatchIsEmptiedBeforeItIsFilledAgain) {
   SampleQueue queue(1 << 20, 1);
   SampleQueue::Batch batch;

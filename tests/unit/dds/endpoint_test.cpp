@@ -59,6 +59,24 @@ class EndpointTest : public testing::Test {
   Signal signal_;
 };
 
+TEST_F(EndpointTest, SamplesHaveTheTimeOfTheParticipantsClock) {
+  ParticipantOptions options = memberOptions("a", "cell");
+  options.clock = WallClock(1'000'000'000'000'000'000);  // which the machine's wall clock need not agree with
+  Participant a(options), b(memberOptions("b", "cell"));
+  Inbox inbox(signal_);
+  const auto r = reader(b, rawOptions(Profile::kEvent), inbox);
+  const auto w = writer(a, rawOptions(Profile::kEvent));
+  ASSERT_TRUE(match(*w, *r));
+  const std::int64_t before = options.clock.now();
+  ASSERT_TRUE(w->write(payloadOf(1)));
+  const std::int64_t after = options.clock.now();
+  ASSERT_TRUE(waitFor(inbox, 1));
+  const std::int64_t sent = inbox.samples().at(0).source_timestamp_ns;
+  EXPECT_GE(sent, before - 1);  // on the wire stand fractions of 2^-32 s
+  EXPECT_LE(sent, after + 1);
+  EXPECT_GE(a.self().started_ns, WallClock(1'000'000'000'000'000'000 - 60'000'000'000).now());
+}
+
 TEST_F(EndpointTest, WhatATypedWriterSendsArrivesByteByByteInOrder) {
   constexpr std::uint64_t kCount = 500;
   Participant plant(memberOptions("plant", "cell"));

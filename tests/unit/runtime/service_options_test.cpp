@@ -29,6 +29,7 @@ TEST(ServiceOptions, ArriveAsTheyWereGiven) {
     told.recording = false;
     told.checkpoint = "at-800.json";
     told.scheduling.fifo_priority = 50;
+    told.clock = dds::WallClock(-5'000'000'000);
     told.starts_paused = role == "plant";
     told.supervised = role == "plant" || role == "recorder";
     if (role == "controller") {
@@ -56,6 +57,7 @@ TEST(ServiceOptions, ArriveAsTheyWereGiven) {
     EXPECT_EQ(got.law, told.law);
     EXPECT_EQ(got.out, told.out);
     EXPECT_EQ(got.record_later, told.record_later);
+    EXPECT_EQ(got.clock, told.clock) << "one that is started later counts the run's time";
   }
 }
 
