@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     test::SmallRecording recording(path);
     msg::Event event;
     recording.add(dds::topics::kEvent, "plant", event);
-    recording.attach("certificate.json", std::as_bytes(std::span(data, size)));
+    recording.attach("certificate.json", {reinterpret_cast<const char*>(data), size});
     recording.close();
   }
   try {

@@ -1,6 +1,7 @@
 // Two recordings compared: what is paired with what, what is the same, and which rules may be given.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -118,6 +119,61 @@ TEST_F(BagDiff, StepsThatBeginAgainAreAnotherTake) {
   EXPECT_EQ(stream.only_a, 1U);
   EXPECT_EQ(stream.first->at.take, 0U);
   EXPECT_EQ(stream.first->at.step, 2U);
+}
+
+/// A run that was reset after these steps, then went over the others.
+std::function<void(SmallRecording&)> resetRun(const std::vector<std::uint64_t>& before,
+                                              const std::vector<std::uint64_t>& after) {
+  return [=](SmallRecording& out) {
+    commands(before)(out);
+    msg::Rewind rewind;
+    rewind.take(1);
+    for (const msg::RewindPhase phase : {msg::REWIND_PREPARE, msg::REWIND_COMMIT}) {
+      rewind.phase(phase);
+      out.add(dds::topics::kRewind, "plant", rewind);
+    }
+    commands(after)(out);
+  };
+}
+
+TEST_F(BagDiff, ARunThatWasResetIsComparedFromItsLastResetOn) {
+  const RecordingDiff found = diff(resetRun({0, 1, 2, 3}, {0, 1, 2}), commands({0, 1, 2}));
+  EXPECT_TRUE(found.isSame());
+  EXPECT_EQ(found.streams.at({"joint_command", "force"}).compared, 3U);
+  EXPECT_EQ(found.resets_before, (std::array<std::uint32_t, 2>{1, 0}));
+  EXPECT_TRUE(diff(resetRun({0, 5}, {0, 1}), resetRun({0, 1, 2}, {0, 1})).isSame());
+  const RecordingDiff other = diff(resetRun({0, 1, 2}, {0, 1, 2}), commands({0, 1}));
+  EXPECT_EQ(other.streams.at({"joint_command", "force"}).only_a, 1U);
+}
+
+TEST_F(BagDiff, TheTakesBeforeAResetAreComparedWhenAskedFor) {
+  DiffRequest all;
+  all.all_takes = true;
+  EXPECT_TRUE(diff(resetRun({0, 1, 2}, {0, 1}), resetRun({0, 1, 2}, {0, 1}), all).isSame());
+  const RecordingDiff found = diff(resetRun({0, 1, 2}, {0, 1}), resetRun({0, 1}, {0, 1}), all);
+  EXPECT_EQ(found.streams.at({"joint_command", "force"}).only_a, 1U);
+  EXPECT_EQ(found.resets_before, (std::array<std::uint32_t, 2>{0, 0}));
+}
+
+TEST_F(BagDiff, WithoutTheTopicOfResetsATakeBeginsWhereTheStatesGoBack) {
+  const auto states = [](const std::vector<std::uint64_t>& steps) {
+    return [=](SmallRecording& out) {
+      msg::PlantState state;
+      for (const std::uint64_t step : steps) {
+        state.step(step);
+        out.add(dds::topics::kPlantState, "plant", state);
+      }
+    };
+  };
+  const auto left_out = [&](const std::vector<std::uint64_t>& steps) {
+    return [=](SmallRecording& out) {
+      states(steps)(out);
+      out.attach("certificate.json", R"({"left_out": ["rewind"]})");
+    };
+  };
+  const RecordingDiff found = diff(left_out({0, 1, 2, 0, 1, 0, 1, 2, 3}), states({0, 1, 2, 3}));
+  EXPECT_TRUE(found.isSame());
+  EXPECT_EQ(found.resets_before, (std::array<std::uint32_t, 2>{2, 0}));
 }
 
 TEST_F(BagDiff, TheSameStepTwiceIsPairedInItsOrder) {

@@ -43,8 +43,8 @@ class SmallRecording {
     time_ns_ += 1'000'000;
     writer_.write(channel->second.id, ++channel->second.sequence, time_ns_, time_ns_, payload);
   }
-  void attach(const std::string& name, mcap::ByteView data) {
-    writer_.addAttachment(name, "application/json", time_ns_, 0, data);
+  void attach(const std::string& name, std::string_view text) {
+    writer_.addAttachment(name, "text/plain", 0, 0, mcap::asBytes(text));
   }
   void close() { writer_.close(); }
 

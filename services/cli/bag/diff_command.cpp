@@ -27,6 +27,16 @@ std::string textOf(const FirstDifference& first) {
   return textOf(first.at) + (what.field.empty() ? "" : ", " + what.field) + ": " + what.a + " | " + what.b;
 }
 
+/// Which take of each recording is compared; empty where neither was reset.
+std::string takesText(const RecordingDiff& diff) {
+  const auto [a, b] = diff.resets_before;
+  if (a == 0 && b == 0) return "";
+  const auto one = [](std::uint32_t resets) {
+    return resets == 0 ? "the only one" : fmt::format("the last of {}, after a reset", resets + 1);
+  };
+  return fmt::format("takes       A: {}; B: {}\n", one(a), one(b));
+}
+
 void printText(const DiffRequest& request, const RecordingDiff& diff) {
   std::size_t topic_width = 5, service_width = 7;
   for (const auto& [key, stream] : diff.streams) {
@@ -34,7 +44,7 @@ void printText(const DiffRequest& request, const RecordingDiff& diff) {
     service_width = std::max(service_width, key.second.size());
   }
   const auto first = diff.firstDifferent();
-  fmt::print("{}: A {}, B {}\n", diff.isSame() ? "same" : "different", request.a, request.b);
+  fmt::print("{}: A {}, B {}\n{}", diff.isSame() ? "same" : "different", request.a, request.b, takesText(diff));
   if (first) {
     fmt::print("first       {}, {}\n", nameOf(*first), textOf(*diff.streams.at(*first).first));
   }
@@ -67,9 +77,13 @@ nlohmann::ordered_json toJson(const DiffRequest& request, const RecordingDiff& d
     }
     streams.push_back(row);
   }
-  nlohmann::ordered_json json{
-      {"a", request.a},    {"b", request.b}, {"same", diff.isSame()}, {"first", nullptr}, {"left_out", diff.left_out},
-      {"streams", streams}};
+  nlohmann::ordered_json json{{"a", request.a},
+                              {"b", request.b},
+                              {"same", diff.isSame()},
+                              {"first", nullptr},
+                              {"left_out", diff.left_out},
+                              {"resets_before", diff.resets_before},
+                              {"streams", streams}};
   if (const auto first = diff.firstDifferent()) json["first"] = {{"topic", first->first}, {"service", first->second}};
   return json;
 }
@@ -102,6 +116,8 @@ void addBagDiff(CLI::App& bag, ExitCode& exit_code) {
       "shadow_command. Two runs of a scenario in lockstep are the same in these, while status, requests and events "
       "tell\n"
       "of processes and clocks. In recordings without any of them, all but *_status are compared.\n"
+      "Of a run that was reset only the last take is compared, as by `bag hash`, metrics, shadow, whatif and rerun;\n"
+      "--all-takes compares the takes before it as well.\n"
       "Without --tolerance and --ignore bytes are compared, with them values; with --tolerance members called *_hash "
       "are\n"
       "left out. A field is named without indices, as position or reference.position, and stands for all within it.\n"
@@ -116,6 +132,7 @@ void addBagDiff(CLI::App& bag, ExitCode& exit_code) {
       ->add_option("--tolerance", request->tolerances,
                    "how far numbers may be apart, in their unit: everywhere, or as field=1e-9, topic.field=1e-9")
       ->delimiter(',');
+  command->add_flag("--all-takes", request->all_takes, "the takes before a reset too");
   command->add_flag("--json", *json, "as a JSON object");
   command->callback([request, json, &exit_code] { exit_code = diff(*request, *json); });
 }

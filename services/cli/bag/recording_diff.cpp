@@ -13,6 +13,7 @@
 #include "control/nearest_name.hpp"
 #include "dds/topics.hpp"
 #include "mcap/lookup.hpp"
+#include "report/recording.hpp"
 
 namespace baton {
 namespace {
@@ -108,7 +109,11 @@ class Differ {
       if (!request.topics.empty()) return std::ranges::count(request.topics, topic) > 0;
       return has_loop ? isOfTheLoop(topic) : !dds::isStatusTopic(topic);
     };
-    for (std::size_t side = 0; side < 2; ++side) openStreams(side, isCompared);
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Take take = request.all_takes ? Take{} : lastTake(sides_[side].reader);
+      diff_.resets_before[side] = take.number;
+      openStreams(side, isCompared, take.begin_ns);
+    }
     if (streams_.empty()) throw UsageError("expected topics to compare, found none; --topics chooses them");
     for (const std::string& name : names) {
       if (!isCompared(name)) diff_.left_out.push_back(name);
@@ -120,9 +125,9 @@ class Differ {
   }
 
   template <class IsCompared>
-  void openStreams(std::size_t side, const IsCompared& is_compared) {
+  void openStreams(std::size_t side, const IsCompared& is_compared, std::uint64_t begin_ns) {
     Side& file = sides_[side];
-    mcap::MessageFilter filter;
+    mcap::MessageFilter filter{.start_time_ns = begin_ns};
     for (const auto& [id, channel] : file.reader.channels()) {
       if (!is_compared(channel.topic)) continue;
       Stream& stream = streams_[{channel.topic, serviceOf(channel)}];

@@ -4,8 +4,11 @@
 /// `step`, by step, else by their order; a step that occurs again after a later one belongs to the next take. Both
 /// files are walked through side by side, the one that is behind first: what is held is a chunk of each and the samples
 /// that wait for their counterpart, which is how far the two recordings are out of step.
+///
+/// Of a run that was reset the last take is compared, as by `hash`, `metrics` and `rerun`, unless all are asked for.
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstdint>
 #include <functional>
@@ -26,6 +29,7 @@ struct DiffRequest {
   std::vector<std::string> topics{};      // empty: those of the control loop; without any, all but *_status
   std::vector<std::string> ignored{};     // as RuleSet
   std::vector<std::string> tolerances{};  // as RuleSet
+  bool all_takes = false;                 // those before a reset too
 };
 
 /// Where a sample stands among those of its stream.
@@ -55,7 +59,8 @@ using StreamKey = std::pair<std::string, std::string>;  // topic, service
 
 struct RecordingDiff {
   std::map<StreamKey, StreamDiff> streams;
-  std::vector<std::string> left_out;  // topics of either file
+  std::vector<std::string> left_out;             // topics of either file
+  std::array<std::uint32_t, 2> resets_before{};  // of A and B: how often the run was reset before what is compared
   std::vector<std::string> warnings;
   [[nodiscard]] bool isSame() const;
   /// The stream that differs first: by step, then by log time. Nothing when all is the same.

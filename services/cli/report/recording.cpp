@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
@@ -27,6 +28,18 @@ bool isLeftOut(const mcap::Reader& reader, const std::string& topic) {
     return row.is_object() && row.value("topic", nlohmann::json()) == topic &&
            row.value("count", nlohmann::json()) != nlohmann::json(0);
   });
+}
+
+/// For a recording without the topic that announces a reset: a take begins where the steps go back.
+Take lastTakeByStates(const mcap::Reader& reader) {
+  Take last;
+  std::map<mcap::ChannelId, std::uint64_t> steps;
+  forEachMessageOf(dds::topics::kPlantState, reader, 0, [&](const msg::PlantState& state, const auto& view) {
+    const auto [step, is_first] = steps.try_emplace(view.channel->id, state.step());
+    if (!is_first && state.step() < step->second) last = {.number = last.number + 1, .begin_ns = view.log_time_ns};
+    step->second = state.step();
+  });
+  return last;
 }
 
 [[noreturn]] void missTopic(const std::string& topic, const std::filesystem::path& file) {
@@ -102,6 +115,8 @@ std::optional<unsigned> partIndex(const mcap::Reader& reader) {
 std::uint64_t lastTakeBegin(const mcap::Reader& reader) { return lastTake(reader).begin_ns; }
 
 Take lastTake(const mcap::Reader& reader) {
+  const char* topic = dds::topics::kRewind.name;
+  if (!hasTopic(reader, topic) && isLeftOut(reader, topic)) return lastTakeByStates(reader);
   Take last;
   forEachMessageOf(dds::topics::kRewind, reader, 0, [&](const msg::Rewind& rewind, const auto& view) {
     if (rewind.phase() != msg::REWIND_COMMIT || view.log_time_ns < last.begin_ns) return;

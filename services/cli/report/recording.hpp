@@ -42,7 +42,8 @@ void expectNotLeftOut(const mcap::Reader& reader, const std::string& topic, cons
 [[nodiscard]] std::optional<unsigned> partIndex(const mcap::Reader& reader);
 
 /// The last take of a run: how often it has been reset before, and the log time from which on everything belongs to it;
-/// 0 when it never was.
+/// 0 when it never was. Where the topic that announces a reset was left out, a take begins where the steps of the
+/// states go back.
 struct Take {
   std::uint32_t number = 0;
   std::uint64_t begin_ns = 0;
