@@ -71,6 +71,9 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
   app.add_option("--from", options.from_s, "start here, in s of log time from the recording's first message")
       ->check(notNegative());
   app.add_option("--to", options.to_s, "end here, likewise")->check(notNegative());
+  app.add_option("--skip-gaps", options.longest_gap_s,
+                 "wait no longer than so many s (of log time) where nothing was logged, as after a clock was set")
+      ->check(notNegative());
   CLI::Option* loop = app.add_option("--loop", passes,
                                      "N times in all, or without end: at once from the start again, with the source "
                                      "timestamps of the recording, which go back; sequence numbers go on")

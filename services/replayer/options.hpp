@@ -23,6 +23,7 @@ struct ReplayOptions {
   double rate = 1.0;                         // recorded seconds per second; 0 for as fast as readers take it
   std::optional<double> from_s;              // log time from the recording's first message; from its start
   std::optional<double> to_s;                // to its end
+  std::optional<double> longest_gap_s;       // in which nothing was logged; what is longer is cut to that
   std::uint32_t passes = 1;                  // through it; 0 without end
   bool starts_paused = false;
   std::size_t wait_for = 0;                   // reading processes on every topic before the first message

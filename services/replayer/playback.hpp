@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -19,6 +20,7 @@ class Playback {
     double rate = 1.0;         // recorded seconds per second; 0: as fast as possible
     std::uint32_t passes = 1;  // through the recording; 0: without end
     bool starts_paused = false;
+    std::uint64_t longest_gap_ns = std::numeric_limits<std::uint64_t>::max();  // of log time that is waited for
   };
   explicit Playback(const Plan& plan);
 

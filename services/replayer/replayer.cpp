@@ -40,6 +40,15 @@ dds::ParticipantOptions participantOptions(const ReplayOptions& options) {
   return place;
 }
 
+Playback::Plan planOf(const ReplayOptions& options) {
+  Playback::Plan plan{.rate = options.rate, .passes = options.passes, .starts_paused = options.starts_paused};
+  // Log times are counts of ns in 64 bits: no gap is longer.
+  if (options.longest_gap_s && *options.longest_gap_s < 1e10) {
+    plan.longest_gap_ns = static_cast<std::uint64_t>(*options.longest_gap_s * 1e9);
+  }
+  return plan;
+}
+
 /// DDS's threads inherit it, so it comes before them.
 const ReplayOptions& scheduled(const ReplayOptions& options) {
   for (const std::string& refusal : applyScheduling(options.scheduling, false)) spdlog::warn("{}", refusal);
@@ -56,7 +65,7 @@ ExitCode exitCode(const ReplayResult& result) {
 Replayer::Replayer(const ReplayOptions& options)
     : options_(scheduled(options)),
       playlist_(options),
-      playback_({.rate = options.rate, .passes = options.passes, .starts_paused = options.starts_paused}),
+      playback_(planOf(options)),
       participant_(participantOptions(options)),
       outlet_(participant_, playlist_.endpoints(),
               [this] {

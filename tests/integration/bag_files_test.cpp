@@ -8,6 +8,7 @@
 #include <random>
 
 #include "mcap/reader.hpp"
+#include "mcap/writer.hpp"
 #include "support/live_run.hpp"
 #include "support/processes.hpp"
 #include "support/recordings.hpp"
@@ -31,6 +32,27 @@ class BagFiles : public testing::Test {
 
   Bench bench;
 };
+
+TEST_F(BagFiles, AClockThatWasSetIsNamed) {
+  mcap::Writer writer(path("foreign.mcap"), {});
+  const mcap::ChannelId channel = writer.addChannel("numbers", "cdr", writer.addSchema("Number", "omgidl", {}), {});
+  const mcap::Bytes payload(8);
+  constexpr std::uint64_t kStart_ns = 1'700'000'000'000'000'000, kHour_ns = 3'600'000'000'000;
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    const std::uint64_t time_ns = kStart_ns + i * 1'000'000 + (i < 10 ? 0 : kHour_ns);
+    writer.write(channel, i + 1, time_ns, time_ns, payload);
+  }
+  writer.close();
+  for (const char* command : {"info", "verify"}) {
+    const Finished json = bench.baton({"bag", command, path("foreign.mcap"), "--json"});
+    const nlohmann::json clock = nlohmann::json::parse(json.out).at("clock");
+    ASSERT_EQ(clock.size(), 1U) << command << json.out;
+    EXPECT_EQ(clock[0].get<std::string>().find("nothing was logged for 3600.001 s from 0.009 s on"), 0U) << clock;
+    const Finished text = bench.baton({"bag", command, path("foreign.mcap")});
+    EXPECT_NE(text.out.find("note        nothing was logged"), std::string::npos) << text.out;
+    EXPECT_EQ(text.exit_code, command == std::string("info") ? 0 : 1) << "a pause is no fault";
+  }
+}
 
 TEST_F(BagFiles, ARunIsProvenCompleteAndSoIsACopyOfIt) {
   const std::string file = record("run.mcap");

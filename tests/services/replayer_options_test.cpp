@@ -37,6 +37,14 @@ TEST(ReplayOptions, RateIsAFactorOrMax) {
   }
 }
 
+TEST(ReplayOptions, GapsAreKeptUnlessTheyAreToBeSkipped) {
+  EXPECT_FALSE(parsed({"run.mcap"}).longest_gap_s);
+  EXPECT_EQ(parsed({"run.mcap", "--skip-gaps", "0.5"}).longest_gap_s, 0.5);
+  for (const char* wrong : {"-1", "nan", "inf", "x"}) {
+    EXPECT_THROW((void)parsed({"run.mcap", "--skip-gaps", wrong}), UsageError) << wrong;
+  }
+}
+
 TEST(ReplayOptions, TopicsLeaveTheFileAlone) {
   const ReplayOptions options = parsed({"--topics", "a,b", "run.mcap"});
   EXPECT_EQ(options.topics, (std::vector<std::string>{"a", "b"}));

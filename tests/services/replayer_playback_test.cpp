@@ -45,6 +45,26 @@ TEST(Playback, APauseHoldsAndWhatWasLeftOfTheWaitIsWaitedForAfterIt) {
   EXPECT_EQ(playback.due(at(10)).deadline_ns, kNow + 1006 * kMs);
 }
 
+TEST(Playback, AGapIsWaitedForNoLongerThanAsked) {
+  Playback playback = begun({.longest_gap_ns = 500'000'000});
+  EXPECT_EQ(playback.due(at(400)).deadline_ns, kNow + 400 * kMs) << "a shorter one is kept";
+  playback.sent("a", at(400), kNow + 400 * kMs);
+  for (int ask = 0; ask < 3; ++ask) EXPECT_EQ(playback.due(at(3'600'400)).deadline_ns, kNow + 900 * kMs);
+  EXPECT_EQ(playback.position(kNow + 600 * kMs), at(3'600'100)) << "from the gap's end";
+  playback.sent("a", at(3'600'400), kNow + 900 * kMs);
+  EXPECT_EQ(playback.due(at(3'600'410)).deadline_ns, kNow + 910 * kMs);
+  EXPECT_EQ(playback.playedTime(), 900'000'000U);
+}
+
+TEST(Playback, AGapThatIsCutShortKeepsWhatWasLeftOfItOverAPause) {
+  Playback playback = begun({.rate = 2.0, .longest_gap_ns = 1'000'000'000});
+  EXPECT_EQ(playback.due(at(3'600'000)).deadline_ns, kNow + 500 * kMs);
+  playback.pause(kNow + 100 * kMs);
+  EXPECT_TRUE(playback.due(at(3'600'000)).is_held);
+  playback.resume(kNow + 5000 * kMs);
+  EXPECT_EQ(playback.due(at(3'600'000)).deadline_ns, kNow + 5400 * kMs);
+}
+
 TEST(Playback, CanBeginPaused) {
   Playback playback({.starts_paused = true});
   playback.begin(at(0), kNow);

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "bag/log_times.hpp"
 #include "bag/verdict.hpp"
 #include "base/error.hpp"
 #include "mcap/lookup.hpp"
@@ -48,6 +49,7 @@ struct BagSummary {
   std::uint64_t plain_bytes = 0;
   std::uint64_t start_ns = 0;
   std::uint64_t end_ns = 0;
+  LogTimes log_times;
   std::map<std::pair<std::string, std::string>, TopicSummary> topics;  // by name and type
   std::vector<mcap::AttachmentIndex> attachments;
 
@@ -101,6 +103,7 @@ void readMessages(const mcap::Reader& reader, BagSummary& bag) {
     ++topic.messages;
     bag.start_ns = bag.messages == 0 ? message.log_time_ns : std::min(bag.start_ns, message.log_time_ns);
     bag.end_ns = std::max(bag.end_ns, message.log_time_ns);
+    bag.log_times.add(channel.id, message.log_time_ns);
     ++bag.messages;
     bag.plain_bytes += mcap::kMessageHeadBytes + message.data.size();
   });
@@ -157,6 +160,7 @@ void printText(const BagSummary& bag) {
     fmt::print("by          Baton {}, {} ({})\n", of("version"), of("compiler"), of("flags"));
   }
   fmt::print("messages    {} in {:.3f} s\n", bag.messages, bag.duration());
+  for (const std::string& text : bag.log_times.findings()) fmt::print("note        {}\n", text);
   fmt::print("size        {:.2f} MB, messages compressed {:.2f} : 1\n", static_cast<double>(bag.info.file_bytes) * 1e-6,
              bag.compression());
   for (const mcap::AttachmentIndex& attachment : bag.attachments) {
@@ -190,6 +194,7 @@ nlohmann::ordered_json toJson(const BagSummary& bag) {
                               {"messages", bag.messages},
                               {"start_ns", bag.start_ns},
                               {"duration_s", bag.duration()},
+                              {"clock", bag.log_times.findings()},
                               {"size_B", bag.info.file_bytes},
                               {"compression_ratio", bag.compression()},
                               {"attachments", attachments},

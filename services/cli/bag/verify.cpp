@@ -112,6 +112,7 @@ class Booking {
     // Beside the messages, on another core; what one has read the other finds in the page cache.
     std::future<std::optional<bool>> crc = std::async(std::launch::async, [&] { return reader.dataCrcMatches(); });
     accounts_.clear();
+    result_.log_times.nextFile();
     reader.forEachMessage({.order = mcap::MessageFilter::Order::kFile},
                           [this](const mcap::MessageView& message) { book(message); });
     if (repeated_ > 0) {
@@ -134,6 +135,7 @@ class Booking {
     const auto id = static_cast<std::size_t>(message.channel->id);
     if (id >= accounts_.size()) accounts_.resize(id + 1);
     Account& account = accounts_[id];
+    result_.log_times.add(message.channel->id, message.log_time_ns);
     if (account.count++ == 0) account.stream = streamOf(*message.channel);
     if (++result_.messages % 0x4000 == 0) {
       progress_(static_cast<double>(result_.messages) / static_cast<double>(expected_));

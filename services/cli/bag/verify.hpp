@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bag/log_times.hpp"
 #include "bag/verdict.hpp"
 #include "runtime/ledger.hpp"
 
@@ -19,6 +20,7 @@ struct Verification {
   std::vector<std::string> missing;  // messages that are missing, and what keeps completeness from being proven
   std::string summary;               // the certificate's verdict, in its words
   Ledger ledger{{}};                 // every stream as the bytes give it, beside what its writer says of it
+  LogTimes log_times;                // whose jumps take nothing from the verdict
   std::uint64_t messages = 0;        // that could be read
   std::uint64_t bytes = 0;           // of the files
 

@@ -36,6 +36,7 @@ void printText(const Verification& found) {
   for (const auto* findings : {&found.damage, &found.cuts, &found.missing}) {
     for (const std::string& text : *findings) fmt::print("            {}\n", text);
   }
+  for (const std::string& text : found.log_times.findings()) fmt::print("note        {}\n", text);
   fmt::print("messages    {} in {} streams\n", found.messages, found.ledger.streams().size());
   fmt::print("size        {:.2f} MB\n", static_cast<double>(found.bytes) * 1e-6);
 }
@@ -46,6 +47,7 @@ nlohmann::ordered_json toJson(const Verification& found) {
           {"damage", found.damage},
           {"cuts", found.cuts},
           {"missing", found.missing},
+          {"clock", found.log_times.findings()},
           {"certificate", found.summary},
           {"manifests", found.ledger.servicesHeard()},
           {"messages", found.messages},
