@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "mcap/lookup.hpp"
 
 namespace baton {
@@ -60,6 +61,17 @@ dds::Liveliness livelinessOf(const std::map<std::string, std::string>& qos) {
           .lease_ns = promiseOf(qos, "lease_ns")};
 }
 
+/// Fast DDS cuts a longer name short, and any name at a zero.
+void checkName(const std::string& topic, const std::string& what, const std::string& name) {
+  constexpr std::size_t kMostBytes = 255;
+  if (!name.empty() && name.size() <= kMostBytes && !hasControlCharacters(name)) return;
+  constexpr std::size_t kShown = 60;
+  throw UsageError("topic " + printable(topic.substr(0, kShown)) + ": expected " + what + " of 1 to " +
+                   std::to_string(kMostBytes) + " bytes without control characters, found " +
+                   (name.empty() ? "none" : "'" + printable(name.substr(0, kShown)) + "'") +
+                   (name.size() > kShown ? " of " + std::to_string(name.size()) + " bytes" : ""));
+}
+
 }  // namespace
 
 dds::EndpointOptions replayEndpoint(const mcap::Channel& channel, const mcap::Schema* schema,
@@ -70,9 +82,9 @@ dds::EndpointOptions replayEndpoint(const mcap::Channel& channel, const mcap::Sc
   }
   std::string type = valueOf(channel.metadata, "type");
   if (type.empty() && schema != nullptr) type = schema->name;
-  if (type.empty()) throw UsageError("topic " + channel.topic + ": expected the name of its type, found none");
-
+  checkName(channel.topic, "the name of its type", type);
   const std::string new_name = valueOf(remap, channel.topic);
+  checkName(channel.topic, "a name", new_name.empty() ? channel.topic : new_name);
   const std::map<std::string, std::string> qos = recordedQos(channel.metadata);
   // Of the lasting profiles kEvent, also for what was a status: it keeps enough to send again whatever gets lost.
   return {.topic = new_name.empty() ? channel.topic : new_name,
@@ -84,6 +96,22 @@ dds::EndpointOptions replayEndpoint(const mcap::Channel& channel, const mcap::Sc
           .deadline_ns = promiseOf(qos, "deadline_ns"),
           .liveliness = livelinessOf(qos),
           .ownership_strength = numberOf<std::uint32_t>(qos, "ownership_strength")};
+}
+
+std::map<std::string, std::string> contradictions(const std::map<mcap::ChannelId, dds::EndpointOptions>& endpoints) {
+  std::map<std::string, const dds::EndpointOptions*> firsts;
+  std::map<std::string, std::string> found;
+  for (const auto& [id, endpoint] : endpoints) {
+    const dds::EndpointOptions& first = *firsts.try_emplace(endpoint.topic, &endpoint).first->second;
+    if (first.type != endpoint.type) {
+      found.try_emplace(endpoint.topic, "topic " + endpoint.topic + ": expected one type, found " + first.type +
+                                            " and " + endpoint.type);
+    } else if (first.keyed != endpoint.keyed) {
+      found.try_emplace(endpoint.topic,
+                        "topic " + endpoint.topic + ": expected writers with a key or without, found both");
+    }
+  }
+  return found;
 }
 
 }  // namespace baton

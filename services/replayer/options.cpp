@@ -50,9 +50,10 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
       "On a terminal: space pauses and resumes; right: 1 s ahead, in a pause the next message; left: 1 s back;\n"
       "+ and - double and halve the rate; q ends it. From elsewhere: `baton player`."};
   app.footer(
-      "Exit codes: 0 all was replayed, or as much as was asked for; 1 the recording is cut or damaged and the rest "
-      "was\n"
-      "replayed, or a message was later than --max-late-us; 2 wrong input or not a recording, 3 the file or DDS is "
+      "Exit codes: 0 all was replayed, or as much as was asked for; 1 the recording is cut or damaged, or a topic "
+      "in\n"
+      "it cannot be replayed, and the rest was replayed, or a message was later than --max-late-us; 2 wrong input or "
+      "not a recording, 3 the file or DDS is "
       "not\n"
       "available, 130 interrupted.");
   app.add_option("file", options.file, "recording (MCAP)")->required();

@@ -32,16 +32,33 @@ std::uint64_t windowBytes() {
 Outlet::Outlet(dds::Participant& participant, const std::map<mcap::ChannelId, dds::EndpointOptions>& endpoints,
                std::function<bool()> keep_waiting)
     : participant_(participant), keep_waiting_(std::move(keep_waiting)), window_(windowBytes()) {
-  for (const auto& [id, endpoint] : endpoints) lines_.try_emplace(id, participant, endpoint);
+  for (const auto& [id, endpoint] : endpoints) {
+    try {
+      lines_.try_emplace(id, participant, endpoint);
+    } catch (const Error& error) {  // of QoS that contradict each other, say
+      refused_[id] = error.what();
+    }
+  }
 }
 
-void Outlet::write(const mcap::MessageView& message) {
+bool Outlet::write(const mcap::MessageView& message) {
   Line& line = lines_.at(message.channel->id);
   if (!line.writer.write(message.data, static_cast<std::int64_t>(message.publish_time_ns))) {
-    throw Error(ExitCode::kFailed,
-                "DDS refused a message of " + std::to_string(message.data.size()) + " bytes on topic " + line.topic);
+    if (line.refused++ == 0) line.first_refused = message.data.size();
+    return false;
   }
   in_flight_ += message.data.size() + kDatagramBytes;
+  return true;
+}
+
+std::vector<std::string> Outlet::problems() const {
+  std::vector<std::string> all = problems_;
+  for (const auto& [id, line] : lines_) {
+    if (line.refused == 0) continue;
+    all.push_back("topic " + line.topic + ": DDS refused " + std::to_string(line.refused) +
+                  " messages, the first of them of " + std::to_string(line.first_refused) + " bytes");
+  }
+  return all;
 }
 
 void Outlet::spareReaders(bool is_hurried) {

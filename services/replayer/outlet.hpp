@@ -17,12 +17,13 @@ namespace baton {
 class Outlet {
  public:
   /// @param keep_waiting  called about ten times a second while readers are waited for; false gives up.
-  /// Throws UnavailableError when DDS refuses a writer.
+  /// A writer that DDS refuses is missing, and named in refused().
   Outlet(dds::Participant& participant, const std::map<mcap::ChannelId, dds::EndpointOptions>& endpoints,
          std::function<bool()> keep_waiting);
 
-  /// Sends a message with the source timestamp it had. Throws Error when DDS refuses it.
-  void write(const mcap::MessageView& message);
+  /// Sends a message with the source timestamp it had. Returns false, and counts it for problems(), when DDS refuses
+  /// it.
+  bool write(const mcap::MessageView& message);
   /// Waits now and then for readers that are slower than a replay in a hurry: they would lose messages. At the recorded
   /// rate they keep up as those of the original did, and waiting for them would cost the rhythm.
   void spareReaders(bool is_hurried);
@@ -33,8 +34,10 @@ class Outlet {
   [[nodiscard]] Readers readers() const;
   [[nodiscard]] std::size_t topics() const;
   [[nodiscard]] std::size_t writers() const { return lines_.size(); }
-  /// Readers that are no longer waited for.
-  [[nodiscard]] const std::vector<std::string>& problems() const { return problems_; }
+  /// Channels without a writer, and why.
+  [[nodiscard]] const std::map<mcap::ChannelId, std::string>& refused() const { return refused_; }
+  /// Readers that are no longer waited for, and messages that DDS refused.
+  [[nodiscard]] std::vector<std::string> problems() const;
 
  private:
   struct Line {
@@ -42,12 +45,15 @@ class Outlet {
         : topic(options.topic), writer(participant, options) {}
     std::string topic;
     dds::RawWriter writer;
-    bool is_deaf = false;  // a reader of it does not acknowledge
+    bool is_deaf = false;           // a reader of it does not acknowledge
+    std::uint64_t refused = 0;      // messages
+    std::size_t first_refused = 0;  // bytes of the first of them
   };
 
   dds::Participant& participant_;
   std::function<bool()> keep_waiting_;
   std::map<mcap::ChannelId, Line> lines_;
+  std::map<mcap::ChannelId, std::string> refused_;
   std::uint64_t window_;         // bytes that may be on their way
   std::uint64_t in_flight_ = 0;  // since the last acknowledgment
   std::vector<std::string> problems_;

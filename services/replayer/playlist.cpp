@@ -22,14 +22,34 @@ bool isReplayersOwn(const std::string& topic) {
 }  // namespace
 
 Playlist::Playlist(const ReplayOptions& options)
-    : reader_(options.file, {.on_damage = [this](const mcap::Damage& damage) { noteDamage(damage); }}) {
+    : file_(options.file),
+      has_range_(options.from_s || options.to_s),
+      reader_(options.file, {.on_damage = [this](const mcap::Damage& damage) { noteDamage(damage); }}) {
   if (!reader_.info().is_complete) noteProblem("the recording was cut: " + reader_.info().problem);
   checkNames(options);
   filter_.start_time_ns = mcap::logTimeAt(reader_, options.from_s.value_or(0.0));
   if (options.to_s) filter_.end_time_ns = mcap::logTimeAt(reader_, *options.to_s);
   chooseChannels(options);
-  total_ = countMessages(options.from_s || options.to_s);
+  total_ = countMessages();
   rewind();
+}
+
+void Playlist::leaveOut(mcap::ChannelId id, const std::string& reason) {
+  noteLeftOut(reason);
+  endpoints_.erase(id);
+  std::erase(filter_.channels, id);
+  expectTopics();
+  total_ = countMessages();
+}
+
+void Playlist::noteLeftOut(const std::string& reason) {
+  noteProblem(reason + "; it is left out (--topics chooses what is replayed)");
+}
+
+void Playlist::expectTopics() const {
+  if (!endpoints_.empty()) return;
+  throw UsageError(file_ + ": expected a topic to replay, found none" +
+                   (problems_.empty() ? "" : ": " + problems_.back()));
 }
 
 void Playlist::noteProblem(const std::string& problem) {
@@ -66,17 +86,21 @@ void Playlist::chooseChannels(const ReplayOptions& options) {
         continue;
       }
       endpoints_.emplace(id, std::move(endpoint));
-      filter_.channels.push_back(id);
     } catch (const UsageError& error) {
-      noteProblem(error.what());
+      noteLeftOut(error.what());
     }
   }
-  if (endpoints_.empty()) throw UsageError(options.file + ": expected a topic to replay, found none");
+  for (const auto& [topic, reason] : contradictions(endpoints_)) {
+    noteLeftOut(reason);
+    std::erase_if(endpoints_, [&](const auto& entry) { return entry.second.topic == topic; });
+  }
+  for (const auto& [id, endpoint] : endpoints_) filter_.channels.push_back(id);
+  expectTopics();
 }
 
-std::uint64_t Playlist::countMessages(bool has_range) const {
+std::uint64_t Playlist::countMessages() const {
   std::uint64_t count = 0;
-  if (has_range) {
+  if (has_range_) {
     reader_.forEachMessage(filter_, [&](const mcap::MessageView&) { ++count; });
     return count;
   }

@@ -17,8 +17,9 @@ namespace baton {
 
 class Playlist {
  public:
-  /// Opens the recording. Throws FormatError when it is not one, UsageError for topics it does not have or when nothing
-  /// of it can be replayed, and UnavailableError when the file is not to be had.
+  /// Opens the recording. A topic that cannot be replayed is left out, and named among the problems. Throws FormatError
+  /// when it is not one, UsageError for topics it does not have or when nothing of it can be replayed, and
+  /// UnavailableError when the file is not to be had.
   explicit Playlist(const ReplayOptions& options);
   Playlist(const Playlist&) = delete;
   Playlist& operator=(const Playlist&) = delete;
@@ -27,6 +28,9 @@ class Playlist {
   [[nodiscard]] bool next(mcap::MessageView& message);
   /// The next message is the first at or after this log time. Reads no more of the file than its chunk.
   void seek(std::uint64_t log_time_ns);
+  /// Does without a channel that DDS refuses, from the next seek() or rewind() on. Throws UsageError when no other is
+  /// left.
+  void leaveOut(mcap::ChannelId id, const std::string& reason);
   void rewind() { seek(filter_.start_time_ns); }
 
   /// The writers that stand in for the recorded ones.
@@ -48,8 +52,12 @@ class Playlist {
   void noteProblem(const std::string& problem);
   void checkNames(const ReplayOptions& options) const;
   void chooseChannels(const ReplayOptions& options);
-  [[nodiscard]] std::uint64_t countMessages(bool has_range) const;
+  void noteLeftOut(const std::string& reason);
+  void expectTopics() const;
+  [[nodiscard]] std::uint64_t countMessages() const;
 
+  const std::string file_;
+  const bool has_range_;
   std::vector<std::string> problems_;
   std::set<std::uint64_t> damaged_;  // offsets of damage told of
   mcap::Reader reader_;

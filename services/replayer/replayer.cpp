@@ -73,6 +73,8 @@ Replayer::Replayer(const ReplayOptions& options)
                 return !isInterrupted() && !playback_.isStopped() && !sleeper_.rings();
               }),
       remote_(participant_, [this] { sleeper_.ring(); }) {
+  for (const auto& [id, reason] : outlet_.refused()) playlist_.leaveOut(id, reason);
+  playlist_.rewind();
   fetch();
 }
 
@@ -151,10 +153,10 @@ void Replayer::fetch() {
 
 void Replayer::send(const Playback::Due& due) {
   const std::int64_t late_before_ns = due.deadline_ns ? steadyNow() - *due.deadline_ns : 0;
-  outlet_.write(*next_);
+  const bool is_sent = outlet_.write(*next_);
   const std::int64_t now_ns = steadyNow();
   if (due.deadline_ns) noteLateness(now_ns - *due.deadline_ns);
-  ++result_.messages;
+  if (is_sent) ++result_.messages;
   playback_.sent(next_->channel->topic, next_->log_time_ns, now_ns);
   outlet_.spareReaders(!due.deadline_ns || playback_.rate() > 1.0 || late_before_ns > kBehind_ns);
   if (step_ && playback_.stepsLeft() == 0) endStep("");
@@ -191,7 +193,7 @@ void Replayer::finish() {
   result_.topics = outlet_.topics();
   result_.recorded_s = static_cast<double>(playback_.playedTime()) * 1e-9;
   result_.problems = playlist_.problems();
-  result_.problems.insert(result_.problems.end(), outlet_.problems().begin(), outlet_.problems().end());
+  for (std::string& problem : outlet_.problems()) result_.problems.push_back(std::move(problem));
   const double max_late_us = static_cast<double>(result_.lateness_ns.max()) * 1e-3;
   if (options_.max_late_us && max_late_us > *options_.max_late_us) {
     result_.problems.push_back(fmt::format("a message went out {:.1f} us late, where --max-late-us allows {:.1f}",

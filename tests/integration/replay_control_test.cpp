@@ -174,6 +174,60 @@ TEST_F(ReplayControl, SeeksWhereItIsToldBothWays) {
   EXPECT_TRUE(listener.hears({15'500, 15'501, 1250, 3001, 19'998, 19'999}));
 }
 
+TEST_F(ReplayControl, AGapIsSkippedWhenAsked) {
+  Listener listener(bench_, "listener");
+  // An hour between two messages: nothing ends unless the gaps are skipped.
+  start({writeNumbers(bench_, 20, 3'600'000 * kMs), "--wait-for-readers", "listener", "--skip-gaps", "0.001"});
+  EXPECT_EQ(bench_.wait(pid_), 0);
+  EXPECT_TRUE(listener.hears(range(0, 20)));
+}
+
+TEST_F(ReplayControl, ATopicThatCannotBeReplayedIsLeftOutAndTheOthersAreReplayed) {
+  const std::string file = (bench_.folder() / "bad.mcap").string();
+  mcap::Writer writer(file, {});
+  std::uint64_t time_ns = kStart_ns;
+  const auto add = [&](const std::string& topic, const std::string& type, const std::string& encoding = "cdr",
+                       const std::string& qos = "reliability: reliable\ndurability: volatile\n") {
+    const mcap::ChannelId channel =
+        writer.addChannel(topic, encoding, writer.addSchema(type, "omgidl", {}), {{"qos", qos}});
+    for (std::uint32_t i = 0; i < 5; ++i) {
+      time_ns += kMs;
+      writer.write(channel, i + 1, time_ns, time_ns, payloadOf(i));
+    }
+  };
+  add("two", "One");
+  add("numbers", "baton::test::Number");
+  add("two", "Another");
+  add("text", "Json", "json");
+  add("long", std::string(300, 'T'));
+  add("contradicting", "baton::test::Number", "cdr",
+      "reliability: best_effort\ndurability: volatile\nownership: exclusive\n");
+  writer.close();
+
+  const std::vector<std::string> replay{"replay", file, "--rate", "max", "--json"};
+  const Finished all = bench_.baton(replay);
+  EXPECT_EQ(all.exit_code, 1) << all.err;
+  const nlohmann::json summary = nlohmann::json::parse(all.out);
+  const auto problems = summary.at("problems").get<std::vector<std::string>>();
+  const auto isNamed = [&](const std::string& topic) {
+    return std::count_if(problems.begin(), problems.end(), [&](const std::string& problem) {
+      return problem.find("topic " + topic) != std::string::npos && problem.find("--topics") != std::string::npos;
+    });
+  };
+  for (const char* topic : {"two", "text", "long"}) EXPECT_EQ(isNamed(topic), 1) << topic << summary;
+  EXPECT_EQ(isNamed("numbers"), 0);
+  // Whether exclusive writers may be best effort is for the DDS to say.
+  EXPECT_EQ(summary.at("messages"), isNamed("contradicting") > 0 ? 5 : 10) << summary;
+
+  std::vector<std::string> chosen = replay;
+  chosen.insert(chosen.end(), {"--topics", "numbers"});
+  EXPECT_EQ(bench_.baton(chosen).exit_code, 0);
+  chosen.back() = "two";
+  const Finished none = bench_.baton(chosen);
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("expected one type, found One and Another"), std::string::npos) << none.err;
+}
+
 TEST_F(ReplayControl, AChangeOfRateTakesEffect) {
   Listener listener(bench_, "listener");
   // An hour between two messages: nothing ends unless the rate is obeyed.

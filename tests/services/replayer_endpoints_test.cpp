@@ -128,6 +128,43 @@ TEST(ReplayEndpoint, RefusesWhatIsNotCdr) {
   EXPECT_THROW((void)replayEndpoint(channel, nullptr, {}), UsageError);
 }
 
+TEST(ReplayEndpoint, RefusesNamesThatDdsWouldChange) {
+  const auto error = [](const std::string& topic, const std::string& type) {
+    mcap::Channel channel = recordedChannel("volatile");
+    channel.topic = topic;
+    channel.metadata["type"] = type;
+    try {
+      (void)replayEndpoint(channel, nullptr, {});
+      return std::string();
+    } catch (const UsageError& refused) {
+      return std::string(refused.what());
+    }
+  };
+  EXPECT_EQ(error(std::string(255, 't'), std::string(255, 'T')), "");
+  EXPECT_EQ(error("", "T"), "topic : expected a name of 1 to 255 bytes without control characters, found none");
+  EXPECT_NE(error("t", std::string(256, 'T')).find("of 256 bytes"), std::string::npos);
+  EXPECT_NE(error(std::string(256, 't'), "T"), "");
+  EXPECT_NE(error(std::string("t\0u", 3), "T"), "");
+  EXPECT_EQ(error("t\033[2J", "T").find('\033'), std::string::npos) << "fit for a terminal";
+  EXPECT_EQ(replayEndpoint(recordedChannel("volatile"), nullptr, {{"plant_state", "seen"}}).topic, "seen");
+}
+
+TEST(ReplayEndpoint, OneTopicHasOneTypeWithAKeyOrWithout) {
+  const auto endpoint = [](const std::string& topic, const std::string& type, bool keyed = false) {
+    return dds::EndpointOptions{.topic = topic, .type = type, .keyed = keyed};
+  };
+  std::map<mcap::ChannelId, dds::EndpointOptions> endpoints{{mcap::ChannelId{1}, endpoint("a", "A")},
+                                                            {mcap::ChannelId{2}, endpoint("b", "A")},
+                                                            {mcap::ChannelId{3}, endpoint("a", "A")}};
+  EXPECT_TRUE(contradictions(endpoints).empty());
+  endpoints[mcap::ChannelId{4}] = endpoint("a", "B");
+  EXPECT_EQ(contradictions(endpoints),
+            (std::map<std::string, std::string>{{"a", "topic a: expected one type, found A and B"}}));
+  endpoints[mcap::ChannelId{5}] = endpoint("b", "A", true);
+  EXPECT_EQ(contradictions(endpoints).size(), 2U);
+  EXPECT_NE(contradictions(endpoints).at("b").find("a key"), std::string::npos);
+}
+
 TEST(ReplayEndpoint, RenamesTheTopicAlone) {
   const dds::EndpointOptions endpoint =
       replayEndpoint(recordedChannel("volatile"), nullptr, {{"plant_state", "seen"}, {"contact", "felt"}});
