@@ -75,7 +75,7 @@ bool MonolithicRun::step() {
   hashes.command = hashOf(command_message_);
 
   if (!arm_.move(effort_, contact_)) {
-    return fail("the motion is no longer finite: the step may be too long for the law's gains");
+    return fail(scenario_.lostMotion(contact_.penetration > 0.0));
   }
   chain_hash_ = dds::chainStep(chain_hash_, hashes);
   ++step_;

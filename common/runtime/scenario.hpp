@@ -129,6 +129,7 @@ struct Scenario {
   RecordingConfig recording;
   std::vector<Fault> faults;          // that strike on purpose
   std::vector<std::string> warnings;  // what is odd but workable, with file and line
+  std::string fast_pole;              // what is too fast for the sub-steps, and which would do; empty: nothing
 
   [[nodiscard]] double stepSeconds() const { return static_cast<double>(step_ns) * 1e-9; }
   /// Whether all parts save their state at the start of this step: now and then, and at the end; not where a message
@@ -138,6 +139,8 @@ struct Scenario {
   /// Whether something of this service goes wrong on purpose.
   [[nodiscard]] bool wantsFaultOf(const std::string& service) const;
   [[nodiscard]] bool plansFailureOf(const std::string& controller_name) const;
+  /// Why the motion may have stopped being finite, and what to do. @param is_touching  the tip, where it did.
+  [[nodiscard]] std::string lostMotion(bool is_touching) const;
   /// The arm at the start of the run.
   [[nodiscard]] ArmConfig armConfig() const;
   /// The controller called that; throws UsageError, with the nearest name, when there is none.

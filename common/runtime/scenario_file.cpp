@@ -1,16 +1,12 @@
 /// Scenario files: a whole experiment in YAML, as deploy/scenarios/demo.yaml documents it, to a checked Scenario.
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <sstream>
 
 #include "base/error.hpp"
 #include "control/law.hpp"
 #include "control/nearest_name.hpp"
-#include "robot/dynamics.hpp"
 #include "robot/kinematics.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/scenario.hpp"
@@ -27,7 +23,7 @@ const NumberRange kCommandLimit{0.0, 1e9, "N m or N", true};
 // --- time
 
 std::int64_t readStep(const YamlNode& node) {
-  const double ns = node.number({1e-6, 1.0, "s"}) * 1e9;
+  const double ns = node.number({static_cast<double>(kMinStep_ns) / 1e9, 1.0, "s"}) * 1e9;
   constexpr double kRounding_ns = 1e-3;
   if (std::abs(ns - std::round(ns)) > kRounding_ns) node.refuse("a whole number of nanoseconds");
   return std::llround(ns);
@@ -51,7 +47,7 @@ std::int64_t defaultMissedSteps(std::int64_t step_ns) {
 
 void readTime(const YamlMap& map, Scenario& scenario) {
   scenario.step_ns = readStep(map["step_s"]);
-  scenario.substeps = static_cast<int>(map.integerOr("substeps", 1, 1000, scenario.substeps));
+  scenario.substeps = static_cast<int>(map.integerOr("substeps", 1, kMaxSubsteps, scenario.substeps));
   if (const auto duration = map.find("duration_s")) scenario.end_step = readSteps(*duration, scenario);
   if (const auto mode = map.find("mode")) {
     scenario.mode = mode->oneOf<SimMode>({{"lockstep", SimMode::kLockstep}, {"realtime", SimMode::kRealtime}});
@@ -87,30 +83,6 @@ void readEffortLimit(const YamlMap& map, RobotModel& robot) {
   if (!node) return;
   const JointVector limit = readJointsOrOne(*node, kCommandLimit, robot.size());
   for (int i = 0; i < robot.size(); ++i) robot.joints[static_cast<std::size_t>(i)].effort_limit = limit(i);
-}
-
-/// The slope of friction near rest, D = viscous + coulomb / coulomb_velocity, makes poles of B(q) qdd + D qd = 0: the
-/// eigenvalues of B^-1 D. RK4 is stable for poles up to 2.785 / h; beyond, the joints chatter where they should rest.
-void warnOfFastFriction(const YamlMap& map, Scenario& scenario) {
-  constexpr double kStable = 2.785;
-  const RobotModel& robot = scenario.robot;
-  JointVector root_of_D(robot.size());
-  for (int i = 0; i < robot.size(); ++i) {
-    const JointFriction& friction = robot.joints[static_cast<std::size_t>(i)].friction;
-    root_of_D(i) = std::sqrt(friction.viscous + friction.coulomb / friction.coulomb_velocity);
-  }
-  JointMatrix B;
-  massMatrix(robot, scenario.start_q, B);
-  const JointMatrix scale = root_of_D.asDiagonal();
-  const JointMatrix symmetric = scale * B.llt().solve(scale);  // with the eigenvalues of B^-1 D
-  const double pole = symmetric.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
-  const double substeps = std::ceil(pole * scenario.stepSeconds() / kStable);
-  if (!(substeps > scenario.substeps)) return;
-  std::ostringstream text;
-  text << map["step_s"].place() << "joint friction makes a pole at " << pole
-       << " 1/s near rest, too fast for the plant's sub-steps; give substeps: " << substeps
-       << ", or a larger coulomb_velocity in the robot file";
-  scenario.warnings.push_back(text.str());
 }
 
 Coupling readCoupling(const YamlNode& node) {
@@ -230,13 +202,13 @@ Scenario readScenario(const std::string& file, const std::string& text,
 
   readTime(map, scenario);
   readStart(map, scenario);
-  warnOfFastFriction(map, scenario);
   if (const auto environment = map.find("environment")) {
     const YamlMap world = environment->map({"walls", "coupling"});
     scenario.walls = readWalls(world["walls"]);
     if (const auto coupling = world.find("coupling")) scenario.coupling = readCoupling(*coupling);
   }
   scenario.trajectory = readTrajectory(map["trajectory"], scenario.robot, scenario.start_q);
+  warnOfFastPoles(map, scenario);
   for (const YamlNode& controller : map["controllers"].list(1, kMaxControllers)) {
     scenario.controllers.push_back(readController(controller, scenario));
   }

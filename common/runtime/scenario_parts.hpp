@@ -2,6 +2,7 @@
 /// else wants scenario.hpp.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ namespace baton {
 
 inline constexpr double kMaxTime_s = 1e6;  // longer runs are open-ended
 inline constexpr std::size_t kMaxControllers = 16;
+inline constexpr int kMaxSubsteps = 1000;
+inline constexpr std::int64_t kMinStep_ns = 1000;
 
 // Wide enough for any experiment, narrow enough to catch a slip of units or of a decimal point.
 inline const NumberRange kTime{0.0, kMaxTime_s, "s"};
@@ -63,6 +66,10 @@ void readChanges(const YamlMap& map, Scenario& scenario);
 
 /// The walls of an environment.
 [[nodiscard]] std::vector<PlaneSpec> readWalls(const YamlNode& node);
+
+/// Warns of friction and walls that the sub-steps are too long for: from the scenario, which has the world and the
+/// trajectory already.
+void warnOfFastPoles(const YamlMap& map, Scenario& scenario);
 
 /// @param start_q  where the arm starts: the orientation of a tip whose file does not give one.
 [[nodiscard]] TrajectorySpec readTrajectory(const YamlNode& node, const RobotModel& robot, const JointVector& start_q);

@@ -272,7 +272,7 @@ void Plant::endStep() {
   const JointVector raw_step = takes_over ? takeOver(step) : JointVector();
   if (takes_over && keeps_torque_) effort_ = arm_.holdingEffort(step);  // the blend it reckoned with is gone
   if (!arm_.move(arm_.blended(step, effort_), contact_)) {
-    return abort("the motion is no longer finite: the step may be too long for the law's gains");
+    return abort(scenario_.lostMotion(contact_.penetration > 0.0));
   }
   chain_hash_ = dds::chainStep(chain_hash_, hashes_);
   if (takes_over) {

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <sstream>
 
 #include "bad_input.hpp"
 #include "robot/kinematics.hpp"
 #include "robot/simulation.hpp"
+#include "runtime/monolithic_run.hpp"
 #include "runtime/scenario.hpp"
 
 namespace baton {
@@ -230,6 +232,99 @@ TEST(Friction, ThatSubstepsCannotFollowIsWarnedOfAndChatters) {
             "a.yaml:3: step_s: joint friction makes a pole at 2000 1/s near rest, too fast for the plant's sub-steps; "
             "give substeps: 2, or a larger coulomb_velocity in the robot file");
   EXPECT_TRUE(parse(kTip).warnings.empty());
+  // One more sub-step than is allowed: a shorter step, and of the scenario's times each falls on one of its steps.
+  EXPECT_TRUE(warnings("step_s: 0.5\nsubsteps: 360").empty());
+  EXPECT_NE(warnings("step_s: 0.5\nsubsteps: 350").at(0).find("; give substeps: 360, or"), std::string::npos);
+}
+
+/// The first number that follows the words.
+double numberAfter(const std::string& text, const std::string& words) {
+  const std::size_t at = text.find(words);
+  EXPECT_NE(at, std::string::npos) << words << " in " << text;
+  return at == std::string::npos ? 0.0 : std::stod(text.substr(at + words.size()));
+}
+
+/// The slider as it is to be, with friction and a spring that holds it: what a scenario of it is warned of, and how it
+/// ends.
+struct Plan {
+  double mass, coulomb, stiffness;
+};
+struct Slide {
+  Slide(double step_s, double substeps, const Plan& plan, double duration_s = 0.02) {
+    const auto shown = [](double number) {
+      std::ostringstream text;
+      text.precision(12);
+      text << number;
+      return text.str();
+    };
+    const std::string robot = replaced(replaced(kSlider, "coulomb: 4", "coulomb: " + shown(plan.coulomb)), "mass_kg: 2",
+                                       "mass_kg: " + shown(plan.mass));
+    std::ostringstream text;
+    text << "name: a\nrobot: slider.yaml\nstep_s: " << shown(step_s) << "\nsubsteps: " << shown(substeps)
+         << "\nduration_s: " << shown(duration_s) << "\nstart: {position: [0.01]}\n"
+         << "environment: {walls: [{point_m: [0, 0, 0], normal: [0, -1, 0], unilateral: false, stiffness_N_per_m: "
+         << shown(plan.stiffness) << "}]}\n"
+         << "controllers: [{name: pd, law: joint_pd, parameters: {kp: 1, kd: 0}}]\nactive: pd\n"
+         << "trajectory: {waypoints: [{time_s: 0, position: [0.01]}]}\n";
+    MonolithicRun run(parseScenario("a.yaml", text.str(), "slider.yaml", robot));
+    warnings = run.scenario().warnings;
+    while (run.step()) {
+    }
+    failure = run.failure();
+  }
+  std::vector<std::string> warnings;
+  std::string failure;
+};
+
+TEST(Stiffness, AWallThatSubstepsCannotFollowIsWarnedOfAndToBlame) {
+  // sqrt(K / B) = sqrt(1e9 / 2) = 22361 1/s on the imaginary axis: RK4 holds it up to 2.828 / 22361 = 126 us.
+  const Plan plan{.mass = 2.0, .coulomb = 0.0, .stiffness = 1e9};
+  EXPECT_TRUE(Slide(0.001, 8, plan).warnings.empty());
+  EXPECT_EQ(Slide(0.001, 8, plan).failure, "");
+  const Slide few(0.001, 2, plan, 0.1);
+  ASSERT_EQ(few.warnings.size(), 1u);
+  EXPECT_EQ(few.warnings[0],
+            "a.yaml:3: step_s: wall 1 makes a pole at 22360.7 1/s where the tip touches it, too fast for the plant's "
+            "sub-steps; give substeps: 8, or a softer wall");
+  EXPECT_EQ(few.failure,
+            "the motion is no longer finite: wall 1 makes a pole at 22360.7 1/s where the tip touches it, too fast for "
+            "the plant's sub-steps; give substeps: 8");
+}
+
+TEST(Stiffness, AdviceCanBeFollowed) {
+  // Poles that need more than the most sub-steps, of friction, of a spring, and of both.
+  for (const Plan& plan : {Plan{2.0, 4e4, 0.0}, Plan{1e-6, 0.0, 1e9}, Plan{1e-6, 0.02, 1e9}}) {
+    for (const double step_s : {0.001, 0.0005}) {
+      const Slide slide(step_s, 4, plan);
+      ASSERT_EQ(slide.warnings.size(), 1u);
+      const double substeps = numberAfter(slide.warnings[0], "give substeps: ");
+      const double shorter_s = numberAfter(slide.warnings[0], " and step_s: ");
+      EXPECT_LE(substeps, 1000);
+      EXPECT_LT(shorter_s, step_s);
+      const Slide followed(shorter_s, substeps, plan);
+      EXPECT_TRUE(followed.warnings.empty()) << slide.warnings[0];
+      EXPECT_EQ(followed.failure, "") << slide.warnings[0];
+    }
+  }
+}
+
+TEST(Stiffness, WhereNothingWouldDoThatIsSaid) {
+  const Slide slide(0.001, 4, {.mass = 2e-3, .coulomb = 1e6, .stiffness = 0.0});
+  ASSERT_EQ(slide.warnings.size(), 1u);
+  EXPECT_EQ(slide.warnings[0].find("give substeps"), std::string::npos);
+  EXPECT_NE(slide.warnings[0].find("would do: give a larger coulomb_velocity"), std::string::npos) << slide.warnings[0];
+}
+
+TEST(Stiffness, OnlyALawThatIsAloneIsToBlame) {
+  const auto lost = [](Coupling coupling, bool is_touching) {
+    Scenario scenario;
+    scenario.coupling = coupling;
+    return scenario.lostMotion(is_touching);
+  };
+  EXPECT_EQ(lost(Coupling::kDerivatives, false),
+            "the motion is no longer finite: the step may be too long for the law's gains");
+  EXPECT_NE(lost(Coupling::kDerivatives, true).find("wall's stiffness"), std::string::npos);
+  EXPECT_NE(lost(Coupling::kHeld, true).find("coupling keeps"), std::string::npos);
 }
 
 }  // namespace
