@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <sstream>
 #include <tuple>
 
 #include "base/error.hpp"
+#include "dds/environment.hpp"
 #include "dds/fastdds.hpp"
 #include "dds/lossy_transport.hpp"
 #include "dds/participant_impl.hpp"
@@ -143,6 +145,7 @@ Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_
   if (options.domain < 0 || options.domain > kMaxDomain) {
     throw UsageError("DDS domain: expected 0 to 232, found " + std::to_string(options.domain));
   }
+  [[maybe_unused]] static const bool is_first = (ignoreForeignSettings(), true);
   self = {.cell = options.cell, .run = options.run, .service = options.service, .started_ns = clock.now()};
   participant = fastdds::createParticipant(options.domain, participantQos(options, self), this,
                                            [this](rtps::GuidPrefix_t& prefix) {
