@@ -32,6 +32,7 @@ YAML::Node entryOf(const YAML::Node& list, const std::string& part, const std::s
     if (part == std::to_string(i) || (has_name && name.Scalar() == part)) return entry;
     known += (known.empty() ? "" : ", ") + (has_name ? name.Scalar() : std::to_string(i));
   }
+  if (known.empty()) throw UsageError("--set " + path + ": the list has no entries, found '" + part + "'");
   throw UsageError("--set " + path + ": expected one of " + known + ", found '" + part + "'");
 }
 

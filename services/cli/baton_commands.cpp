@@ -252,9 +252,12 @@ Json toJson(const msg::SwapOutcome& outcome, const std::optional<msg::SwapReport
     throw UnavailableError(
         "asked, but the run is paused: the handover takes place once it goes on (`baton sim resume`)");
   }
-  throw UnavailableError("no outcome yet: the run stands at step " + std::to_string(sim.step()) + " and " +
-                         (at_step > sim.step() ? "the handover is for step " + std::to_string(at_step)
-                                               : "waits for " + std::string(sim.waiting_for().c_str())));
+  const std::string waits_for = sim.waiting_for().c_str();
+  throw UnavailableError(
+      "no outcome yet: the run stands at step " + std::to_string(sim.step()) + " and " +
+      (at_step > sim.step()
+           ? "the handover is for step " + std::to_string(at_step)
+           : "waits for " + (waits_for.empty() ? "the next step; see `baton controllers`" : waits_for)));
 }
 
 void swap(const CellTarget& target, const SwapWish& wish, ExitCode& exit_code) {

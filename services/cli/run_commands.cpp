@@ -38,7 +38,9 @@ std::string progressText(const RunProgress& progress) {
   std::array<char, 200> text{};
   const double time_s = static_cast<double>(status->time_ns()) * 1e-9;
   switch (status->state()) {
-    case msg::SIM_STATE_STARTING: return std::string("starting: waits for ") + status->waiting_for().c_str();
+    case msg::SIM_STATE_STARTING:
+      return status->waiting_for().size() == 0 ? "starting"
+                                               : std::string("starting: waits for ") + status->waiting_for().c_str();
     case msg::SIM_STATE_PAUSED:
       std::snprintf(text.data(), text.size(), "paused at step %llu (%.3f s)",
                     static_cast<unsigned long long>(status->step()), time_s);

@@ -6,7 +6,8 @@ namespace baton {
 std::string Plant::namesWaitedFor() const {
   std::string names;
   for (const std::string& name : waited_for_) names += (names.empty() ? "" : ", ") + name;
-  return names.empty() ? service_.missing() : names;
+  if (names.empty()) names = service_.missing();
+  return names.empty() ? "the plant itself" : names;  // it is about to begin
 }
 
 void Plant::publishStatus() {

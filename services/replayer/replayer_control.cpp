@@ -36,7 +36,7 @@ std::string Replayer::objectionTo(const std::string& topic) const {
 std::string Replayer::refusalOf(const msg::ReplayRequest& request) const {
   switch (request.action()) {
     case msg::REPLAY_STEP:
-      if (phase_ == Phase::kWaiting) return "it waits for " + waits_for_;
+      if (phase_ == Phase::kWaiting) return "it waits for " + (waits_for_.empty() ? "its readers" : waits_for_);
       if (request.messages() == 0) return "expected at least one message";
       return objectionTo(request.topic().c_str());
     case msg::REPLAY_SEEK: {

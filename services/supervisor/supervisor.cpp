@@ -122,10 +122,18 @@ void Supervisor::limitStart() {
   start_limit_.async_wait([this](const boost::system::error_code& error) {
     if (error || startup_s_ >= 0.0 || stage_ != Stage::kRunning) return;
     fail(ExitCode::kUnavailable, "the run did not start within " + std::to_string(kStartLimit.count()) +
-                                     " s: it waits for " + lastSimStatus().waiting_for().c_str());
+                                     " s: it waits for " + whatTheStartWaitsFor());
     spdlog::error("{}", reason_);
     runIsOver();
   });
+}
+
+std::string Supervisor::whatTheStartWaitsFor() {
+  if (const msg::SimStatus sim = lastSimStatus(); sim.waiting_for().size() > 0) return sim.waiting_for().c_str();
+  // The plant has said nothing.
+  const std::string missing = service_.missing();
+  return (missing.empty() ? "the plant" : "the supervisor to find its services over DDS (" + missing + ")") +
+         "; see the logs in " + deployment_.info.folder;
 }
 
 void Supervisor::start(const std::string& role, const std::string& name, const std::string& law) {

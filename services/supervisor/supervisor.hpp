@@ -36,6 +36,7 @@ class Supervisor {
 
   void startAll();
   void limitStart();
+  [[nodiscard]] std::string whatTheStartWaitsFor();
   void start(const std::string& role, const std::string& name, const std::string& law);
   void childEnded(Child& child, const Child::End& end);
   void whenBegunOrNot(int looks, const std::function<void()>& judge);
