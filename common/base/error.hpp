@@ -14,7 +14,7 @@ enum class ExitCode : int {
   kUsage = 2,         // the command line, a file or a value given is wrong
   kUnavailable = 3,   // something needed is missing or taken: no such run, cell in use, port closed
   kAborted = 4,       // a run was stopped before its end by its own policy
-  kInterrupted = 130  // Ctrl-C or SIGTERM
+  kInterrupted = 130  // by a signal that asks for the end: common/runtime/signals.hpp
 };
 
 /// The message says what was expected, what was found, and what to do.

@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "runtime/signals.hpp"
+
 namespace baton {
 namespace asio = boost::asio;
 namespace {
@@ -41,6 +43,7 @@ Service::Service(ServiceOptions options, Scenario scenario)
                    [this](const dds::Peer& peer) { asio::post(executor_, [this, peer] { peerJoined(peer); }); }),
       admission_(participant_, options_.is_open,
                  [this](const std::string& text) { event(msg::SEVERITY_WARNING, "stranger", text); }) {
+  for (const int number : endingSignals()) signals_.add(number);
   for (const Fault& fault : scenario_.faults) {
     if (fault.service == options_.name && isOfProcess(fault.kind)) process_faults_.push_back(fault);
   }

@@ -14,7 +14,6 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
-#include <csignal>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -143,8 +142,8 @@ class Service {
   ServiceOptions options_;
   Scenario scenario_;
   boost::asio::io_context executor_{1};
-  // From before the first to after the last thing that a signal could cut off.
-  boost::asio::signal_set signals_{executor_, SIGINT, SIGTERM};
+  // HeldSignals keeps signals waiting until the constructor has added them here.
+  boost::asio::signal_set signals_{executor_};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{executor_.get_executor()};
   boost::asio::steady_timer end_limit_{executor_};
   std::mutex mutex_;

@@ -45,7 +45,9 @@ void tellRerun(const RerunRequest& request, ExitCode& exit_code) {
   const bool is_kept = !request.run.out.empty();
   RunRequest run = request.run;
   if (!is_kept) run.out = (folder / "rerun.mcap").string();
-  const Rerun made = rerun(request.recording, folder, run, [](RunSession& session) { return runToTheEnd(session); });
+  ExitCode ended = ExitCode::kOk;
+  const Rerun made =
+      rerun(request.recording, folder, run, [&](RunSession& session) { return ended = runToTheEnd(session); });
   if (request.json) {
     std::puts(toText(toJson(made, request.recording)).c_str());
   } else {
@@ -54,6 +56,7 @@ void tellRerun(const RerunRequest& request, ExitCode& exit_code) {
   }
   if (made.isIdentical()) fs::remove_all(folder);  // else it is there to look into
   exit_code = made.isIdentical() ? ExitCode::kOk : ExitCode::kFailed;
+  if (ended == ExitCode::kInterrupted) exit_code = ended;
 }
 
 }  // namespace

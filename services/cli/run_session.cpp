@@ -15,6 +15,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <sstream>
@@ -34,26 +35,23 @@ namespace {
 std::atomic<int> caught_signals{0};
 }  // namespace
 
-/// Ctrl-C and SIGTERM are counted while this lives.
+/// Signals that ask for the end are counted while this lives.
 class RunSession::SignalCounter {
  public:
   SignalCounter() {
     caught_signals = 0;
     struct sigaction action {};
     action.sa_handler = [](int) { ++caught_signals; };
-    sigaction(SIGINT, &action, &old_int_);
-    sigaction(SIGTERM, &action, &old_term_);
+    for (const int number : endingSignals()) sigaction(number, &action, &old_[number]);
   }
   ~SignalCounter() {
-    sigaction(SIGINT, &old_int_, nullptr);
-    sigaction(SIGTERM, &old_term_, nullptr);
+    for (const auto& [number, old] : old_) sigaction(number, &old, nullptr);
   }
   SignalCounter(const SignalCounter&) = delete;
   SignalCounter& operator=(const SignalCounter&) = delete;
 
  private:
-  struct sigaction old_int_ {};
-  struct sigaction old_term_ {};
+  std::map<int, struct sigaction> old_;
 };
 
 namespace {

@@ -48,9 +48,9 @@ class RunSession {
   RunSession(const RunSession&) = delete;
   RunSession& operator=(const RunSession&) = delete;
 
-  /// Follows the run until `until` says so or the supervisor ends. Ctrl-C is passed on to the supervisor, whose orderly
-  /// end is waited for. `progress` is called several times a second.
-  /// Returns the supervisor's exit code, or nothing when `until` ended it.
+  /// Follows the run until `until` says so or the supervisor ends. A signal that asks for the end is passed on to the
+  /// supervisor, whose orderly end is waited for. `progress` is called several times a second. Returns the supervisor's
+  /// exit code, or nothing when `until` ended it.
   std::optional<ExitCode> follow(const std::function<void(const RunProgress&)>& progress,
                                  const std::function<bool(const msg::SimStatus&)>& until);
 

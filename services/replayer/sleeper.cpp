@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "runtime/signals.hpp"
 #include "terminal.hpp"
 
 namespace baton {
@@ -80,8 +81,7 @@ void listenToSignals(Sleeper& sleeper) {
   struct sigaction action {};
   action.sa_handler = onSignal;
   action.sa_flags = SA_RESTART;
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int number : endingSignals()) sigaction(number, &action, nullptr);
 }
 
 bool isInterrupted() { return is_interrupted; }

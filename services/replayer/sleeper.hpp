@@ -31,8 +31,8 @@ class Sleeper {
   int bell_;
 };
 
-/// From now on the first Ctrl-C or SIGTERM rings and is remembered; the second restores the terminal and ends the
-/// process at once. For one sleeper, which lives as long as the process.
+/// From now on the first signal that asks for the end rings and is remembered; the second restores the terminal and
+/// ends the process at once. For one sleeper, which lives as long as the process.
 void listenToSignals(Sleeper& sleeper);
 [[nodiscard]] bool isInterrupted();
 

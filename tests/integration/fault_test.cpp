@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -57,7 +58,9 @@ TEST(Fault, AKilledSupervisorTakesItsProcessesAlong) {
   EXPECT_EQ(bench.baton({"run", bench.write("short.yaml", shortContact())}).exit_code, 0);
 }
 
-TEST(Fault, CtrlCEndsARunInOrder) {
+class EndingSignal : public ::testing::TestWithParam<int> {};
+
+TEST_P(EndingSignal, EndsARunInOrder) {
   Bench bench;
   const std::string recording = (bench.folder() / "stopped.mcap").string();
   const int pid = bench.start("baton",
@@ -68,12 +71,38 @@ TEST(Fault, CtrlCEndsARunInOrder) {
     const Finished status = bench.baton({"status", "--json"});
     return status.exit_code == 0 && nlohmann::json::parse(status.out).at("step") > 100;
   }));
-  kill(pid, SIGINT);
+  kill(pid, GetParam());
   EXPECT_EQ(bench.wait(pid), 130);
   EXPECT_TRUE(processesWith(bench.folder().string()).empty());
   const mcap::Reader reader(recording);
   EXPECT_TRUE(reader.info().is_complete);
   EXPECT_EQ(bench.baton({"bag", "info", recording}).exit_code, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, EndingSignal, ::testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT),
+                         [](const auto& signal) { return std::string(sigabbrev_np(signal.param)); });
+
+TEST(Fault, AClosedTerminalDoesNotEndARunUnderNohup) {
+  Bench bench;
+  const auto before = signal(SIGHUP, SIG_IGN);  // what nohup does
+  const int pid = bench.start(
+      "baton",
+      {"run", bench.write("live.yaml", endlessContact()), "--no-recording", "--domain", std::to_string(bench.domain())},
+      "run.log");
+  signal(SIGHUP, before);
+  const auto reaches = [&](std::uint64_t step) {
+    return eventually([&] {
+      const Finished status = bench.baton({"status", "--json"});
+      return status.exit_code == 0 && nlohmann::json::parse(status.out).at("step") > step;
+    });
+  };
+  ASSERT_TRUE(reaches(100));
+  for (const int one : processesWith(bench.folder().string())) kill(one, SIGHUP);
+  kill(pid, SIGHUP);
+  const std::uint64_t then = bench.batonJson({"status", "--json"}).at("step");
+  EXPECT_TRUE(reaches(then + 100));
+  kill(pid, SIGTERM);
+  EXPECT_EQ(bench.wait(pid), 130);
 }
 
 TEST(Fault, AHolderThatDiesLosesTheBatonToTheFallback) {

@@ -21,6 +21,7 @@
 #include "runtime/paths.hpp"
 #include "runtime/progress_line.hpp"
 #include "runtime/scenario.hpp"
+#include "runtime/signals.hpp"
 
 namespace baton {
 namespace {
@@ -52,7 +53,8 @@ bool isRecordingOf(const fs::path& file, const Scenario& scenario, const std::st
 class Batch {
  public:
   Batch(const std::vector<fs::path>& scenarios, const BatchOptions& options)
-      : options_(options), signals_(executor_, SIGINT, SIGTERM), timer_(executor_) {
+      : options_(options), signals_(executor_), timer_(executor_) {
+    for (const int number : endingSignals()) signals_.add(number);
     makeFolder(options.folder);
     const std::string build = buildId();
     for (const fs::path& file : scenarios) {
