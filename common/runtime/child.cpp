@@ -97,7 +97,9 @@ Child::Child(asio::io_context& executor, Command command, std::function<void(Chi
 Child::~Child() = default;  // Boost's handle kills and reaps a process that is still running
 
 void Child::signal(int number) const {
-  if (is_running_) kill(pid_, number);
+  if (!is_running_) return;
+  kill(pid_, number);
+  if (number == SIGTERM) kill(pid_, SIGCONT);  // a stopped process could not end in order
 }
 
 std::string Child::End::text() const {

@@ -199,6 +199,7 @@ std::optional<ExitCode> RunSession::follow(const std::function<void(const RunPro
     if (passed_on < caught_signals) {
       passed_on = caught_signals;
       kill(info_.supervisor_pid, SIGTERM);
+      kill(info_.supervisor_pid, SIGCONT);  // a stopped process would not receive it
     }
     progress(now);
     if (now.sim && until(*now.sim)) return std::nullopt;

@@ -105,6 +105,33 @@ TEST(Fault, AClosedTerminalDoesNotEndARunUnderNohup) {
   EXPECT_EQ(bench.wait(pid), 130);
 }
 
+class StoppedProcess : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(StoppedProcess, IsContinuedByDownAndTheRunEndsInOrder) {
+  const Bench bench;
+  const LiveRun run(bench, endlessContact());
+  run.waitForStep(200);
+  const nlohmann::json cell =
+      nlohmann::json::parse(std::ifstream(bench.folder() / "cells" / (std::to_string(bench.domain()) + "-lab.json")));
+  const int pid = GetParam() == "supervisor" ? cell.at("supervisor_pid").get<int>() : run.pidOf(GetParam());
+  ASSERT_GT(pid, 0);
+  ASSERT_EQ(kill(pid, SIGSTOP), 0);
+  const Finished down = bench.baton({"down", "--json"});
+  EXPECT_EQ(down.exit_code, 0) << down.out << down.err;
+  const nlohmann::json result = nlohmann::json::parse(down.out);
+  EXPECT_EQ(result.at("state"), "stopped") << "killed, or given up on: " << result;
+  EXPECT_EQ(result.at("reason"), "stopped from outside");
+  EXPECT_TRUE(result.at("recording").at("complete")) << result;
+  const Finished log = bench.baton({"logs", "supervisor"});
+  EXPECT_EQ(log.out.find("killing"), std::string::npos) << log.out;
+  EXPECT_EQ(log.out.find("does not"), std::string::npos) << log.out;
+  EXPECT_TRUE(eventually([&] { return processesWith(bench.folder().string()).empty(); }));
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, StoppedProcess,
+                         ::testing::Values("supervisor", "plant", "recorder", "environment", "tracking"),
+                         [](const auto& service) { return service.param; });
+
 TEST(Fault, AHolderThatDiesLosesTheBatonToTheFallback) {
   const Bench bench;
   const LiveRun run(bench, endlessContact("baton: {fallback: [force, pd]}\n"));
