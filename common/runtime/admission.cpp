@@ -33,6 +33,12 @@ bool mayWrite(dds::WrittenBy who, std::string_view service) {
   return false;
 }
 
+bool yieldsTo(const dds::Peer& self, const dds::Peer& other, bool is_member, bool has_begun) {
+  const bool is_namesake = other.cell == self.cell && other.service == self.service;
+  if (!is_member || !is_namesake || !isElder(other, self)) return false;
+  return other.run == self.run || (self.service == kPlantName && !has_begun);
+}
+
 bool Admission::admits(const dds::TopicFacts& topic, const dds::Guid& writer) {
   const dds::GuidPrefix prefix = dds::prefixOf(writer);
   if (is_open_ && topic.written_by == dds::WrittenBy::kOperators) return true;

@@ -17,6 +17,12 @@ namespace baton {
 /// Whether a service of that name has anything to say there. The supervisor speaks for services that have died.
 [[nodiscard]] bool mayWrite(dds::WrittenBy who, std::string_view service);
 
+/// Whether a process leaves its place to another: the younger of two copies of a service of one run; and a plant that
+/// has not begun to that of an elder run in the cell. How old the other one is, is its own word, so it counts only with
+/// the run's key, where there is one: then the cell's lock alone keeps other runs out.
+/// @param is_member  whether the other one has our run's key; true where we have none.
+[[nodiscard]] bool yieldsTo(const dds::Peer& self, const dds::Peer& other, bool is_member, bool has_begun);
+
 class Admission {
  public:
   /// Called once for each stranger, on a DDS thread, with a sentence that names it.

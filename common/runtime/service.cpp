@@ -97,17 +97,15 @@ void Service::addToManifest(dds::Profile profile, std::function<msg::StreamManif
   manifests_.push_back(std::move(manifest));
 }
 
+/// Another one of us: a second copy in our run, or the plant of another run in the cell.
 bool Service::isRival(const dds::Peer& peer) const {
   return peer.cell == options_.cell && peer.service == options_.name &&
          (peer.run == options_.run || options_.role == kPlantName);
 }
 
-/// Another one of us: the same run's second copy of a service, or the plant of another run in the cell. The younger
-/// gives way. How old the plant of another run is, is its own word: a run that has begun does not believe it.
 void Service::giveWayToElders() {
   for (const dds::Peer& peer : participant_.peers()) {
-    if (!isRival(peer) || !isElder(peer, participant_.self())) continue;
-    if (ready_ && peer.run != options_.run) continue;
+    if (!yieldsTo(participant_.self(), peer, participant_.isMember(peer.prefix), ready_)) continue;
     return giveWay(peer.run == options_.run ? "run " + peer.run + " has its " + peer.service + " already"
                                             : "cell " + peer.cell + " has a plant of run " + peer.run +
                                                   " already: end that run or choose another --cell");

@@ -1,9 +1,13 @@
 // What any user of the machine can do to another user's run over DDS without forging RTPS: the run reports it, and
 // neither the bytes of the loop, nor the recording's verdict, nor the exit code change.
 #include <gtest/gtest.h>
+#include <signal.h>
 
+#include <atomic>
 #include <chrono>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <numeric>
@@ -116,6 +120,52 @@ INSTANTIATE_TEST_SUITE_P(By, Attacked,
                          [](const auto& param) {
                            return std::string(std::get<0>(param.param).name) + "_" + std::get<1>(param.param).name;
                          });
+
+TEST(Attack, AFloodOfRequestsLeavesTheRecordingComplete) {
+  // With the run's key, by an operator. The recorder stands still meanwhile, as on a machine that has no time for it.
+  const Bench bench;
+  const LiveRun run(bench, endlessContact());
+  run.waitForStep(100);
+  std::ifstream key_file(run.folder() / "key");
+  const std::string key{std::istreambuf_iterator<char>(key_file), {}};
+  const std::string id = run.status.at("run");
+  dds::Participant participant({.domain = bench.domain(),
+                                .partition = "lab/" + id,
+                                .cell = "lab",
+                                .run = id,
+                                .service = "operator-flood",
+                                .key = dds::RunKey::parse(key.substr(0, key.find_last_not_of(" \n") + 1))});
+  ASSERT_TRUE(participant.hasKey());
+  std::atomic<bool> is_named{false};
+  const dds::Reader<msg::Event> events(participant, dds::topics::kEvent,
+                                       [&](const msg::Event& event, const dds::RawSample&) {
+                                         if (event.kind() == "flood") is_named = true;
+                                       });
+  dds::Writer<msg::SwapRequest> requests(participant, dds::topics::kSwapRequest);
+  ASSERT_EQ(kill(run.pidOf("recorder"), SIGSTOP), 0);
+  msg::SwapRequest request;
+  request.target("pd");
+  request.dry_run(true);
+  EXPECT_TRUE(eventually([&] {
+    for (int i = 0; i < 30; ++i) {
+      request.request_id(request.request_id() + 1);
+      requests.write(request);
+    }
+    return is_named.load();
+  })) << "all of them are answered";
+  ASSERT_EQ(kill(run.pidOf("recorder"), SIGCONT), 0);
+  const Finished down = bench.baton({"down", "--json"});
+  EXPECT_EQ(down.exit_code, 0) << down.out << down.err;
+  EXPECT_TRUE(nlohmann::json::parse(down.out).at("recording").at("complete")) << down.out;
+  EXPECT_EQ(bench.baton({"bag", "verify", run.recording}).exit_code, 0);
+}
+
+TEST(Attack, ARunBeginsAlthoughAStrangerSaysThatItIsThePlantOfAnElderRun) {
+  const Bench bench;
+  const Stranger elder(bench.domain(), "an-elder-run", kPlantName);  // in the same cell, and older: it is there first
+  const Finished run = bench.baton({"run", bench.write("run.yaml", shortContact()), "--no-recording"});
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+}
 
 /// Up to three attacks a state, by all strangers together. BATON_ATTACK_MINUTES=60 repeats it with the demo for an
 /// hour; BATON_ATTACK_SEED chooses the same attacks again.

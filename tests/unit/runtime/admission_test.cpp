@@ -49,5 +49,30 @@ TEST(Admission, EveryTopicThatIsNoRequestBelongsToServices) {
   }
 }
 
+TEST(Admission, TheYoungerYieldsAndOnlyToWhoHasTheKey) {
+  const auto peer = [](const std::string& run, const std::string& service, std::int64_t started_ns) {
+    dds::Peer result;
+    result.cell = "lab";
+    result.run = run;
+    result.service = service;
+    result.started_ns = started_ns;
+    return result;
+  };
+  const dds::Peer plant = peer("ours", kPlantName, 100);
+  for (const bool has_begun : {false, true}) {
+    EXPECT_TRUE(yieldsTo(plant, peer("ours", kPlantName, 99), true, has_begun));
+    EXPECT_FALSE(yieldsTo(plant, peer("ours", kPlantName, 99), false, has_begun)) << "a stranger says so";
+    EXPECT_FALSE(yieldsTo(plant, peer("ours", kPlantName, 101), true, has_begun)) << "the younger does";
+    EXPECT_FALSE(yieldsTo(plant, peer("ours", kRecorderName, 99), true, has_begun));
+    EXPECT_EQ(yieldsTo(plant, peer("theirs", kPlantName, 99), true, has_begun), !has_begun);
+    EXPECT_FALSE(yieldsTo(plant, peer("theirs", kPlantName, 99), false, has_begun)) << "a stranger says so";
+    const dds::Peer pd = peer("ours", "pd", 100);
+    EXPECT_FALSE(yieldsTo(pd, peer("theirs", "pd", 99), true, has_begun)) << "each run has its own";
+    dds::Peer elsewhere = peer("theirs", kPlantName, 99);
+    elsewhere.cell = "other";
+    EXPECT_FALSE(yieldsTo(plant, elsewhere, true, has_begun));
+  }
+}
+
 }  // namespace
 }  // namespace baton
