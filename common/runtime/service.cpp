@@ -247,6 +247,31 @@ std::string lossText(const std::string& topic, std::uint64_t lost, std::uint64_t
   return text.empty() ? text : topic + ": " + text;
 }
 
+/// Zero for a request that is handled at once; nothing for one that is left out.
+std::optional<std::chrono::nanoseconds> Service::pauseBefore(const dds::Guid& asker) {
+  const std::int64_t now_ns = std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+  const std::optional<std::int64_t> due_ns = pace_.admit(dds::prefixOf(asker), now_ns);
+  if (due_ns) return std::chrono::nanoseconds(*due_ns - now_ns);
+  if (!std::exchange(told_flood_, true)) {
+    const auto peer = participant_.peer(dds::prefixOf(asker));
+    event(msg::SEVERITY_WARNING, "flood",
+          (peer ? peer->service : dds::toString(dds::prefixOf(asker))) +
+              " asks more than 100 times a second: what would wait for more than 1 s is not answered");
+  }
+  return std::nullopt;
+}
+
+void Service::afterPause(std::chrono::nanoseconds pause, std::function<void()> action) {
+  const auto timer = std::make_shared<asio::steady_timer>(executor_);
+  asio::post(executor_, [this, timer, pause, action = std::move(action)] {
+    timer->expires_after(pause);
+    timer->async_wait([this, timer, action](const boost::system::error_code& error) {
+      const std::lock_guard lock(mutex_);
+      if (!error && !is_closed_) action();
+    });
+  });
+}
+
 void Service::tellLosses() {
   for (const auto& loss : losses_) {
     if (const std::string text = loss(); !text.empty()) spdlog::warn("{}", text);

@@ -30,6 +30,7 @@
 #include "runtime/barrier.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/service_options.hpp"
+#include "time/request_pace.hpp"
 
 namespace baton {
 
@@ -44,7 +45,8 @@ class Service {
   template <class T>
   dds::Writer<T>& output(const dds::Topic<T>& topic, const std::vector<std::string>& readers = {});
 
-  /// A reader on `topic`, likewise with `writers`. `handler(message, sample)` runs under mutex().
+  /// A reader on `topic`, likewise with `writers`. `handler(message, sample)` runs under mutex(). Requests that come
+  /// faster than a recorder could follow what they cause are handled later, or not at all: see RequestPace.
   template <class T>
   void input(const dds::Topic<T>& topic, const std::vector<std::string>& writers,
              typename dds::Reader<T>::Callback handler);
@@ -127,10 +129,13 @@ class Service {
  private:
   void awaitSignal();
   void leave();
+  [[nodiscard]] bool isRecorded() const { return scenario_.recording.enabled; }
   [[nodiscard]] bool isRival(const dds::Peer& peer) const;
   void giveWayToElders();
   void peerJoined(const dds::Peer& peer);
   void tellLosses();
+  [[nodiscard]] std::optional<std::chrono::nanoseconds> pauseBefore(const dds::Guid& asker);
+  void afterPause(std::chrono::nanoseconds pause, std::function<void()> action);
   void strikeWhenReached(std::uint64_t step);
   void checkBarrier();
   void publishManifest();
@@ -173,6 +178,8 @@ class Service {
   std::atomic<std::uint64_t> step_{0};
   std::vector<Fault> process_faults_;  // that the scenario wants on this process
   bool has_begun_ = false;             // at() was called: a process that was started again is spared
+  RequestPace pace_;                   // guarded by mutex_
+  bool told_flood_ = false;            // likewise
   std::uint32_t take_ = 0;             // guarded by mutex_
   bool answers_steps_ = true;
   std::optional<std::uint64_t> last_done_;
@@ -220,9 +227,16 @@ void Service::input(const dds::Topic<T>& topic, const std::vector<std::string>& 
                     typename dds::Reader<T>::Callback handler) {
   auto reader = std::make_shared<dds::Reader<T>>(
       participant_, topic,
-      [this, handler = std::move(handler)](const T& message, const dds::RawSample& sample) {
+      [this, handler = std::move(handler), is_paced = topic.profile == dds::Profile::kRequest && isRecorded()](
+          const T& message, const dds::RawSample& sample) {
         const std::lock_guard lock(mutex_);
-        if (!is_closed_) handler(message, sample);
+        if (is_closed_) return;
+        const auto pause = is_paced ? pauseBefore(sample.writer) : std::chrono::nanoseconds(0);
+        if (!pause) return;
+        if (pause->count() == 0) return handler(message, sample);
+        dds::RawSample later = sample;
+        later.payload = {};  // it is DDS's
+        afterPause(*pause, [handler, message, later] { handler(message, later); });
       },
       [this] { matchesChanged(); }, admission_.filter(topic));
   require(
