@@ -11,6 +11,16 @@
 #include "runtime/service_options.hpp"
 
 namespace baton {
+namespace {
+
+/// Whether samples may be missing there. Of a status only the latest word counts. An operator asks as fast as it likes
+/// and may be gone before a request is sent again; its consequences are on the topics of the services.
+bool mayLack(const std::string& topic) {
+  const dds::TopicFacts* facts = dds::topics::called(topic);
+  return dds::isStatusTopic(topic) || (facts != nullptr && facts->written_by == dds::WrittenBy::kOperators);
+}
+
+}  // namespace
 
 bool Ledger::book(Stream& booked, std::uint64_t sequence, std::span<const std::byte> payload) {
   ReceivedStream& stream = booked.second;
@@ -55,8 +65,7 @@ void Ledger::dropped(Stream& booked, std::uint64_t first_sequence, std::uint64_t
 
 void Ledger::note(Stream& stream, std::uint64_t first_sequence, std::uint64_t last_sequence, const char* reason) {
   stream.second.missing += last_sequence - first_sequence + 1;
-  // Of a status only the latest word counts, and what it replaced is not sent again.
-  if (dds::isStatusTopic(stream.first.first) || gaps_.size() == kMaxGaps) return;
+  if (mayLack(stream.first.first) || gaps_.size() == kMaxGaps) return;
   gaps_.push_back({stream.first, first_sequence, last_sequence, reason});
 }
 
@@ -105,7 +114,7 @@ std::vector<std::string> Ledger::unvouched(const std::set<Key>& vouched) const {
 std::uint64_t Ledger::missing() const {
   std::uint64_t total = 0;
   for (const auto& [key, stream] : streams_) {
-    if (!dds::isStatusTopic(key.first)) total += stream.missing;
+    if (!mayLack(key.first)) total += stream.missing;
   }
   return total;
 }
@@ -158,7 +167,7 @@ std::vector<std::string> Ledger::gapsBut(const std::set<Key>& known) const {
   if (dropped > 0) result.push_back(std::to_string(dropped) + " samples came faster than they could be written");
   for (const auto& [key, stream] : streams_) {
     const std::uint64_t missing = stream.missing - std::min(stream.missing, stream.excused);
-    if (missing == 0 || dds::isStatusTopic(key.first) || known.contains(key) || left_out_.contains(key.first)) continue;
+    if (missing == 0 || mayLack(key.first) || known.contains(key) || left_out_.contains(key.first)) continue;
     result.push_back(key.first + " of " + dds::toString(key.second) + ": " + std::to_string(missing) +
                      " samples are missing");
   }

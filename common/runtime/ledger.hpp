@@ -97,7 +97,7 @@ class Ledger {
   [[nodiscard]] const std::set<std::string>& leftOut() const { return left_out_; }
   /// How many services have sent a manifest: each once, however many of its processes did.
   [[nodiscard]] std::size_t servicesHeard() const;
-  /// Samples that never came, on topics of which none may be missing: of a status only the latest word counts.
+  /// Samples that never came, on topics of which none may be missing: not a status, not a request.
   [[nodiscard]] std::uint64_t missing() const;
 
  private:

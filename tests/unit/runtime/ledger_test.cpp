@@ -247,6 +247,19 @@ TEST_F(LedgerTest, WhatServicesSayIsReadFromWhatIsBooked) {
   EXPECT_FALSE(ledger_.isComplete());
 }
 
+TEST_F(LedgerTest, ARequestThatNeverCameLeavesTheRecordingComplete) {
+  Sender requests{"swap_request", guidOf(9)}, outcomes{"swap_outcome", guidOf(10)};
+  const auto butTheFourth = [](std::uint64_t sequence) { return sequence != 4; };
+  transmit(state_, 10);
+  transmit(contact_, 10);
+  transmit(requests, 10, butTheFourth);
+  ledger_.addManifest(manifestOf("plant", {&state_}));
+  ledger_.addManifest(manifestOf("environment", {&contact_}));
+  EXPECT_TRUE(ledger_.isComplete());
+  transmit(outcomes, 10, butTheFourth);
+  EXPECT_TRUE(mentions(ledger_.problems(), "swap_outcome")) << "the consequences of requests must be there";
+}
+
 TEST_F(LedgerTest, ASecondCopySpeaksForItsOwnSamplesAndForNoService) {
   transmit(state_, 10);
   Sender second{"contact", guidOf(9)};
