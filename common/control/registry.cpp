@@ -63,9 +63,9 @@ std::unique_ptr<Law> makeLaw(const std::string& name, const RobotModel& model, c
 const char* toString(LawStatus status) {
   switch (status) {
     case LawStatus::kOk: return "ok";
-    case LawStatus::kNotFinite: return "not finite";
-    case LawStatus::kSingular: return "singular";
-    case LawStatus::kMissingReference: return "missing reference";
+    case LawStatus::kNotFinite: return "an input or the result is not finite";
+    case LawStatus::kSingular: return "a singular configuration";
+    case LawStatus::kMissingReference: return "the reference lacks the part that it follows";
   }
   return "unknown";
 }

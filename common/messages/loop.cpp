@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace baton {
 namespace {
@@ -17,15 +18,35 @@ std::array<double, 9> rowMajor(const Matrix3& m) {
   return rows;
 }
 
+constexpr const char* kNotFinite = "is not finite";
+
+// Each returns what is wrong with a field, nullptr when nothing is.
+
 template <class Segment>
-[[nodiscard]] bool read(const std::array<double, 3>& from, Segment&& to) {
+[[nodiscard]] const char* read(const std::array<double, 3>& from, Segment&& to) {
   to = Eigen::Map<const Vector3>(from.data());
-  return Eigen::Map<const Vector3>(from.data()).allFinite();
+  return Eigen::Map<const Vector3>(from.data()).allFinite() ? nullptr : kNotFinite;
 }
 
-[[nodiscard]] bool read(const std::array<double, 9>& from, Matrix3& to) {
+[[nodiscard]] const char* read(const std::array<double, 9>& from, Matrix3& to) {
   to = Eigen::Map<const RowMajor3>(from.data());
-  return to.allFinite();
+  return to.allFinite() ? nullptr : kNotFinite;
+}
+
+[[nodiscard]] const char* read(double from, double& to) {
+  to = from;
+  return std::isfinite(to) ? nullptr : kNotFinite;
+}
+
+/// One entry a joint.
+struct Joints {
+  const std::vector<double>& values;
+  int n;
+};
+
+[[nodiscard]] const char* read(const Joints& from, JointVector& to) {
+  if (readSequence(from.values, from.n, to)) return nullptr;
+  return from.values.size() == static_cast<std::size_t>(from.n) ? kNotFinite : "has not one entry a joint";
 }
 
 void write(const Matrix3& R, msg::Quaternion& to) {
@@ -36,13 +57,28 @@ void write(const Matrix3& R, msg::Quaternion& to) {
   to.z(quaternion.z());
 }
 
-[[nodiscard]] bool read(const msg::Quaternion& from, Matrix3& R) {
+[[nodiscard]] const char* read(const msg::Quaternion& from, Matrix3& R) {
   const Eigen::Quaterniond quaternion(from.w(), from.x(), from.y(), from.z());
   constexpr double kTolerance = 1e-6;  // far above rounding, far below a wrong rotation
-  if (!(std::abs(quaternion.norm() - 1.0) < kTolerance)) return false;
+  if (!quaternion.coeffs().allFinite()) return kNotFinite;
+  if (!(std::abs(quaternion.norm() - 1.0) < kTolerance)) return "is no unit quaternion";
   R = quaternion.normalized().toRotationMatrix();
-  return true;
+  return nullptr;
 }
+
+/// Reads field after field, until one is not as it should be.
+class FieldReader {
+ public:
+  template <class From, class To>
+  FieldReader& field(const char* name, const From& from, To&& to) {
+    if (const char* wrong = reading_ ? read(from, std::forward<To>(to)) : nullptr) reading_ = {name, wrong};
+    return *this;
+  }
+  [[nodiscard]] Reading reading() const { return reading_; }
+
+ private:
+  Reading reading_;
+};
 
 }  // namespace
 
@@ -121,41 +157,49 @@ void toMessage(const StepStamp& stamp, const std::string& controller, const Join
   message.inputs_hash(inputs_hash);
 }
 
-bool fromMessage(const msg::PlantState& message, int n, RobotState& state) {
-  return readSequence(message.position(), n, state.q) && readSequence(message.velocity(), n, state.qd) &&
-         readSequence(message.applied_effort(), n, state.tau_applied) && read(message.tip_position(), state.X_WE.p) &&
-         read(message.tip_orientation(), state.X_WE.R) && read(message.tip_velocity(), state.V_WE.head<3>()) &&
-         read(message.tip_angular_velocity(), state.V_WE.tail<3>());
+Reading fromMessage(const msg::PlantState& message, int n, RobotState& state) {
+  return FieldReader()
+      .field("position", Joints{message.position(), n}, state.q)
+      .field("velocity", Joints{message.velocity(), n}, state.qd)
+      .field("applied_effort", Joints{message.applied_effort(), n}, state.tau_applied)
+      .field("tip_position", message.tip_position(), state.X_WE.p)
+      .field("tip_orientation", message.tip_orientation(), state.X_WE.R)
+      .field("tip_velocity", message.tip_velocity(), state.V_WE.head<3>())
+      .field("tip_angular_velocity", message.tip_angular_velocity(), state.V_WE.tail<3>())
+      .reading();
 }
 
-bool fromMessage(const msg::Contact& message, Contact& contact) {
-  contact.penetration = message.penetration();
-  return std::isfinite(contact.penetration) && read(message.force(), contact.h_e.head<3>()) &&
-         read(message.moment(), contact.h_e.tail<3>()) && read(message.force_by_position(), contact.df_dp) &&
-         read(message.force_by_velocity(), contact.df_dv);
+Reading fromMessage(const msg::Contact& message, Contact& contact) {
+  return FieldReader()
+      .field("penetration", message.penetration(), contact.penetration)
+      .field("force", message.force(), contact.h_e.head<3>())
+      .field("moment", message.moment(), contact.h_e.tail<3>())
+      .field("force_by_position", message.force_by_position(), contact.df_dp)
+      .field("force_by_velocity", message.force_by_velocity(), contact.df_dv)
+      .reading();
 }
 
-bool fromMessage(const msg::Reference& message, int n, Reference& reference) {
+Reading fromMessage(const msg::Reference& message, int n, Reference& reference) {
   const bool no_joints = message.position().empty() && message.velocity().empty() && message.acceleration().empty();
-  if (no_joints) {
-    reference.q.resize(0);
-    reference.qd.resize(0);
-    reference.qdd.resize(0);
-  } else if (!readSequence(message.position(), n, reference.q) || !readSequence(message.velocity(), n, reference.qd) ||
-             !readSequence(message.acceleration(), n, reference.qdd)) {
-    return false;
-  }
+  const int joints = no_joints ? 0 : n;
   reference.has_task = message.has_task();
-  return read(message.tip_position(), reference.X_WE.p) && read(message.tip_orientation(), reference.X_WE.R) &&
-         read(message.tip_velocity(), reference.V_WE.head<3>()) &&
-         read(message.tip_angular_velocity(), reference.V_WE.tail<3>()) &&
-         read(message.tip_acceleration(), reference.A_WE.head<3>()) &&
-         read(message.tip_angular_acceleration(), reference.A_WE.tail<3>()) &&
-         read(message.force(), reference.h_d.head<3>()) && read(message.moment(), reference.h_d.tail<3>());
+  return FieldReader()
+      .field("position", Joints{message.position(), joints}, reference.q)
+      .field("velocity", Joints{message.velocity(), joints}, reference.qd)
+      .field("acceleration", Joints{message.acceleration(), joints}, reference.qdd)
+      .field("tip_position", message.tip_position(), reference.X_WE.p)
+      .field("tip_orientation", message.tip_orientation(), reference.X_WE.R)
+      .field("tip_velocity", message.tip_velocity(), reference.V_WE.head<3>())
+      .field("tip_angular_velocity", message.tip_angular_velocity(), reference.V_WE.tail<3>())
+      .field("tip_acceleration", message.tip_acceleration(), reference.A_WE.head<3>())
+      .field("tip_angular_acceleration", message.tip_angular_acceleration(), reference.A_WE.tail<3>())
+      .field("force", message.force(), reference.h_d.head<3>())
+      .field("moment", message.moment(), reference.h_d.tail<3>())
+      .reading();
 }
 
-bool fromMessage(const msg::JointCommand& message, int n, JointVector& effort) {
-  return readSequence(message.effort(), n, effort);
+Reading fromMessage(const msg::JointCommand& message, int n, JointVector& effort) {
+  return FieldReader().field("effort", Joints{message.effort(), n}, effort).reading();
 }
 
 }  // namespace baton

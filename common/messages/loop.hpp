@@ -32,12 +32,19 @@ void toMessage(const StepStamp& stamp, const Reference& reference, msg::Referenc
 void toMessage(const StepStamp& stamp, const std::string& controller, const JointVector& effort,
                std::uint64_t inputs_hash, msg::JointCommand& message);
 
-/// All return false, leaving the signal in some valid state, when the message does not describe one of a robot with n
-/// joints.
-[[nodiscard]] bool fromMessage(const msg::PlantState& message, int n, RobotState& state);
-[[nodiscard]] bool fromMessage(const msg::Contact& message, Contact& contact);
-[[nodiscard]] bool fromMessage(const msg::Reference& message, int n, Reference& reference);
-[[nodiscard]] bool fromMessage(const msg::JointCommand& message, int n, JointVector& effort);
+/// Whether a message describes a signal; if not, the first field that does not, as the IDL calls it, and why.
+struct Reading {
+  const char* field = nullptr;
+  const char* wrong = nullptr;  // "is not finite"
+  explicit operator bool() const noexcept { return field == nullptr; }
+  [[nodiscard]] std::string text() const { return *this ? "" : std::string(field) + " " + wrong; }
+};
+
+/// All leave the signal in some valid state when the message does not describe one of a robot with n joints.
+[[nodiscard]] Reading fromMessage(const msg::PlantState& message, int n, RobotState& state);
+[[nodiscard]] Reading fromMessage(const msg::Contact& message, Contact& contact);
+[[nodiscard]] Reading fromMessage(const msg::Reference& message, int n, Reference& reference);
+[[nodiscard]] Reading fromMessage(const msg::JointCommand& message, int n, JointVector& effort);
 
 /// A joint vector to a bounded sequence and back.
 void assignSequence(const JointVector& from, std::vector<double>& to);

@@ -18,6 +18,16 @@ bool isController(std::string_view service) {
   return !isOperator(service) && std::ranges::find(kOthers, service) == kOthers.end();
 }
 
+/// The service whose topic it is; empty where several may write.
+const char* soleWriter(dds::WrittenBy who) {
+  switch (who) {
+    case dds::WrittenBy::kPlant: return kPlantName;
+    case dds::WrittenBy::kEnvironment: return kEnvironmentName;
+    case dds::WrittenBy::kTrajectory: return kTrajectoryName;
+    default: return "";
+  }
+}
+
 }  // namespace
 
 bool mayWrite(dds::WrittenBy who, std::string_view service) {
@@ -37,6 +47,14 @@ bool yieldsTo(const dds::Peer& self, const dds::Peer& other, bool is_member, boo
   const bool is_namesake = other.cell == self.cell && other.service == self.service;
   if (!is_member || !is_namesake || !isElder(other, self)) return false;
   return other.run == self.run || (self.service == kPlantName && !has_begun);
+}
+
+std::string badInputText(std::string_view topic, std::uint64_t step, std::string_view why) {
+  const dds::TopicFacts* facts = dds::topics::called(topic);
+  const std::string writer = facts == nullptr ? "" : soleWriter(facts->written_by);
+  return writer.empty() ? writer
+                        : writer + " sent " + facts->name + " of step " + std::to_string(step) +
+                              ", which cannot be used: its " + std::string(why);
 }
 
 bool Admission::admits(const dds::TopicFacts& topic, const dds::Guid& writer) {

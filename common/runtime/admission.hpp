@@ -2,6 +2,7 @@
 /// has the run's key and is, by name, a service whose topic it is.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <set>
@@ -16,6 +17,10 @@ namespace baton {
 
 /// Whether a service of that name has anything to say there. The supervisor speaks for services that have died.
 [[nodiscard]] bool mayWrite(dds::WrittenBy who, std::string_view service);
+
+/// "trajectory sent reference of step 601, which cannot be used: its position is not finite"; empty for a topic that
+/// is not one service's alone.
+[[nodiscard]] std::string badInputText(std::string_view topic, std::uint64_t step, std::string_view why);
 
 /// Whether a process leaves its place to another: the younger of two copies of a service of one run; and a plant that
 /// has not begun to that of an elder run in the cell. How old the other one is, is its own word, so it counts only with

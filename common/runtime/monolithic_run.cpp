@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/error.hpp"
+#include "runtime/admission.hpp"
 
 namespace baton {
 namespace {
@@ -52,15 +53,19 @@ bool MonolithicRun::step() {
   // So says the plant, of which every byte is the same here.
   state_message_.checkpoint(scenario_.hasCheckpointAt(step_));
   reference_answer_(step_, reference_message_);
-  if (!fromMessage(state_message_, n, input_.state) || !fromMessage(reference_message_, n, input_.reference)) {
-    return fail("a state or a reference is not finite");
+  if (const Reading reading = fromMessage(state_message_, n, input_.state); !reading) {
+    return fail(badInputText(dds::topics::kPlantState.name, step_, reading.text()));
+  }
+  if (const Reading reading = fromMessage(reference_message_, n, input_.reference); !reading) {
+    return fail(badInputText(dds::topics::kReference.name, step_, reading.text()));
   }
   std::array<std::uint64_t, 3> inputs{hashOf(state_message_), hashOf(reference_message_), 0};
   dds::StepHashes hashes{.state = inputs[0]};
 
   if (contact_answer_) {
-    if (!(*contact_answer_)(state_message_, contact_message_) || !fromMessage(contact_message_, contact_)) {
-      return fail("a contact is not finite");
+    (void)(*contact_answer_)(state_message_, contact_message_);  // the state has been read above
+    if (const Reading reading = fromMessage(contact_message_, contact_); !reading) {
+      return fail(badInputText(dds::topics::kContact.name, step_, reading.text()));
     }
     hashes.contact = inputs[2] = hashOf(contact_message_);
     if (law_.info().uses_force) input_.contact = contact_;

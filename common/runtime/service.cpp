@@ -161,6 +161,9 @@ void Service::publishStatus(msg::ServiceState state, const std::string& text) {
   } else if (const auto plant = barrier_.eldest(kPlantName)) {
     status.plant(plant->prefix);
   }
+  status.refused_topic(refusal_.topic);
+  status.refused_step(refusal_.step);
+  status.refusal(refusal_.why);
   status_->write(status);
 }
 
@@ -179,6 +182,15 @@ void Service::event(msg::Severity severity, const std::string& kind, const std::
     message.text(text);
     const std::lock_guard lock(mutex_);
     if (!manifest_out_) events_->write(message);  // afterwards the recording is being closed; the log has it
+  });
+}
+
+void Service::refuse(const dds::TopicFacts& topic, std::uint64_t step, const Reading& reading) {
+  if (reading || std::exchange(has_refused_, true)) return;
+  asio::post(executor_, [this, name = topic.name, step, reading] {
+    refusal_ = {name, step, reading.text()};
+    publishStatus(ready_ ? msg::SERVICE_READY : msg::SERVICE_STARTING, "");
+    event(msg::SEVERITY_ERROR, "bad_input", badInputText(name, step, refusal_.why));
   });
 }
 

@@ -69,6 +69,9 @@ class Service {
     if (!process_faults_.empty()) strikeWhenReached(step);
     step_ = step;
   }
+  /// A sample of the loop cannot be used. The first one is published as an event and in this service's status; what
+  /// follows from it, the plant decides. From handlers.
+  void refuse(const dds::TopicFacts& topic, std::uint64_t step, const Reading& reading);
   /// The service has answered this step for good; after the last one its manifest goes out. From handlers.
   void stepDone(std::uint64_t step);
   /// The run ended at `step`: from the plant itself, or from SimStatus for all others. `clean` when every service will
@@ -178,9 +181,16 @@ class Service {
   std::atomic<std::uint64_t> step_{0};
   std::vector<Fault> process_faults_;  // that the scenario wants on this process
   bool has_begun_ = false;             // at() was called: a process that was started again is spared
-  RequestPace pace_;                   // guarded by mutex_
-  bool told_flood_ = false;            // likewise
-  std::uint32_t take_ = 0;             // guarded by mutex_
+  struct Refusal {
+    std::string topic;  // empty: there is none
+    std::uint64_t step = 0;
+    std::string why;
+  };
+  Refusal refusal_;           // for the status
+  RequestPace pace_;          // guarded by mutex_
+  bool told_flood_ = false;   // likewise
+  bool has_refused_ = false;  // guarded by mutex_
+  std::uint32_t take_ = 0;    // guarded by mutex_
   bool answers_steps_ = true;
   std::optional<std::uint64_t> last_done_;
   std::optional<std::uint64_t> end_step_;

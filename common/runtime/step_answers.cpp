@@ -2,11 +2,11 @@
 
 namespace baton {
 
-bool ContactAnswer::operator()(const msg::PlantState& state, msg::Contact& contact) {
-  if (!fromMessage(state, joints_, state_)) return false;
+Reading ContactAnswer::operator()(const msg::PlantState& state, msg::Contact& contact) {
+  if (const Reading reading = fromMessage(state, joints_, state_); !reading) return reading;
   const Vector3 v_WE = state_.V_WE.head<3>();
   toMessage({state.step(), state.time_ns()}, planesContact(walls_, state_.X_WE.p, v_WE), contact);
-  return true;
+  return {};
 }
 
 void ReferenceAnswer::operator()(std::uint64_t step, msg::Reference& message) {

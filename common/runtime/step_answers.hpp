@@ -12,8 +12,8 @@ class ContactAnswer {
  public:
   explicit ContactAnswer(const Scenario& scenario) : walls_(scenario.walls), joints_(scenario.robot.size()) {}
 
-  /// False when the state is not one of this robot.
-  [[nodiscard]] bool operator()(const msg::PlantState& state, msg::Contact& contact);
+  /// Nothing is answered to a state that is not one of this robot.
+  [[nodiscard]] Reading operator()(const msg::PlantState& state, msg::Contact& contact);
 
  private:
   std::vector<PlaneSpec> walls_;

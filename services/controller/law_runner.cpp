@@ -60,7 +60,9 @@ void LawRunner::onState(const msg::PlantState& message, const dds::RawSample& sa
   if (!service_.isReady() || !inputs_.wants(kState, message.step())) return;
   const std::size_t slot = StepInputs::slot(message.step());
   RobotState decoded;  // what is refused leaves no trace
-  if (!fromMessage(message, service_.scenario().robot.size(), decoded)) return;
+  if (const Reading reading = fromMessage(message, service_.scenario().robot.size(), decoded); !reading) {
+    return service_.refuse(dds::topics::kPlantState, message.step(), reading);
+  }
   states_[slot] = decoded;
   holds_[slot] = config_.name == message.holder().c_str();
   checkpoints_[slot] = message.checkpoint();
@@ -72,7 +74,9 @@ void LawRunner::onReference(const msg::Reference& message, const dds::RawSample&
   if (!inputs_.wants(kReference, message.step())) return;
   const std::size_t slot = StepInputs::slot(message.step());
   Reference decoded;  // what is refused leaves no trace
-  if (!fromMessage(message, service_.scenario().robot.size(), decoded)) return;
+  if (const Reading reading = fromMessage(message, service_.scenario().robot.size(), decoded); !reading) {
+    return service_.refuse(dds::topics::kReference, message.step(), reading);
+  }
   references_[slot] = decoded;
   hashes_[slot][kReference] = dds::chainHash(0, sample.payload);
   arrived(kReference, message.step());
@@ -83,7 +87,9 @@ void LawRunner::onContact(const msg::Contact& message, const dds::RawSample& sam
   if (!inputs_.wants(kContact, message.step())) return;
   const std::size_t slot = StepInputs::slot(message.step());
   Contact decoded;  // what is refused leaves no trace
-  if (!fromMessage(message, decoded)) return;
+  if (const Reading reading = fromMessage(message, decoded); !reading) {
+    return service_.refuse(dds::topics::kContact, message.step(), reading);
+  }
   contacts_[slot] = decoded;
   hashes_[slot][kContact] = dds::chainHash(0, sample.payload);
   arrived(kContact, message.step());
@@ -148,18 +154,21 @@ void LawRunner::fill(LawInput& input, std::uint64_t step) const {
 void LawRunner::publish(std::uint64_t step, bool commands) {
   const std::size_t slot = StepInputs::slot(step);
   const bool has_effort = last_status_ == LawStatus::kOk;
+  const bool is_news = !has_effort && !failing_;
+  failing_ = !has_effort;
   if (has_effort || commands) {
     // Without an effort, the plant must hear so at this very step, or it would wait: an empty command says it.
     const std::size_t inputs = info_.uses_force ? 3 : 2;
     const std::uint64_t inputs_hash = dds::inputsHash(std::span(hashes_[slot]).first(inputs));
     toMessage(service_.stampOf(step), config_.name, history_[slot], inputs_hash, message_);
+    // Before its command: the plant has the cause when it takes the baton away.
+    if (!has_effort) publishStatus();
     (commands ? command_out_ : shadow_out_).write(message_);
   }
-  if (!has_effort && !failing_) {
+  if (is_news) {
     service_.event(commands ? msg::SEVERITY_ERROR : msg::SEVERITY_INFO, "law",
                    config_.name + " has no effort to give: " + toString(last_status_));
   }
-  failing_ = !has_effort;
 }
 
 bool LawRunner::isIncoming(const msg::SwapPlan& plan) const { return config_.name == plan.incoming().c_str(); }
@@ -253,7 +262,8 @@ void LawRunner::publishStatus() {
   } else if (failing_) {
     status.text(toString(last_status_));
   }
-  if (skipped_ > 0) status.text("skipped " + std::to_string(skipped_) + " steps whose inputs did not come");
+  if (skipped_ > 0 && !failing_)
+    status.text("skipped " + std::to_string(skipped_) + " steps whose inputs did not come");
   status_out_.write(status);
 }
 

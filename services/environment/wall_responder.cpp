@@ -30,7 +30,10 @@ WallResponder::WallResponder(Service& service)
 }
 
 void WallResponder::onState(const msg::PlantState& message) {
-  if (!service_.isReady() || service_.isOver() || !answer_(message, message_)) return;
+  if (!service_.isReady() || service_.isOver()) return;
+  if (const Reading reading = answer_(message, message_); !reading) {
+    return service_.refuse(dds::topics::kPlantState, message.step(), reading);
+  }
   service_.at(message.step());
   contact_out_.write(message_);
   answered_ = message.step();

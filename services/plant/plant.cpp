@@ -289,8 +289,9 @@ void Plant::endStep() {
   openStep();
   if (master_.isOver()) {
     end_reason_ = "reached its end";
-    finish();
+    return finish();
   }
+  endAtBadInput();
 }
 
 void Plant::finish() {

@@ -45,6 +45,9 @@ class Plant {
   void onControllerStatus(const msg::ControllerStatus& status, const dds::RawSample& sample);
   void onRewindAck(const msg::RewindAck& ack);
   void onServiceStatus(const msg::ServiceStatus& status, const dds::RawSample& sample);
+  void onBadInput(std::uint64_t step, const std::string& text);
+  void endAtBadInput();
+  [[nodiscard]] ReasonText objectionTo(const msg::JointCommand& message, int member, JointVector& effort) const;
 
   // The run.
   void startWhenAllAreReady();
@@ -147,6 +150,7 @@ class Plant {
     Speaker speaker;
     Speaker successor;                  // ready before its predecessor was known to have failed
     Refusal refusal;                    // the last one
+    ReasonText ails{};                  // why its law has no effort to give, by its latest status; empty: nothing
     bool is_lost = false;               // gone, silent, or talking nonsense
     bool is_new = false;                // since it was lost: another process
     bool is_lost_as_planned = false;    // the scenario says so
@@ -170,6 +174,12 @@ class Plant {
   std::uint32_t take_ = 0;       // of the run; larger behind each reset
   std::uint32_t next_take_ = 1;  // of the next attempt at a reset
   bool has_recorder_failed_ = false;
+  /// A sample that no service can use: the run ends at its step, which nothing can complete.
+  struct BadInput {
+    std::uint64_t step = 0;
+    std::string text;
+  };
+  std::optional<BadInput> bad_input_;
 
   std::set<std::string, std::less<>> waited_for_;  // services not ready yet
   std::optional<HandoverPlan> completed_;          // took effect at the open step: its outcome follows the motion

@@ -8,7 +8,9 @@
 namespace baton {
 void Plant::onContact(const msg::Contact& message, const dds::RawSample& sample) {
   if (message.step() != master_.step() || master_.hasContact()) return;
-  if (!fromMessage(message, contact_)) return abort("the environment sent a contact that is not finite");
+  if (const Reading reading = fromMessage(message, contact_); !reading) {
+    return onBadInput(message.step(), badInputText(dds::topics::kContact.name, message.step(), reading.text()));
+  }
   hashes_.contact = dds::chainHash(0, sample.payload);
   master_.contactArrived(message.step());
   proceed();
@@ -32,13 +34,7 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
   if (!from_holder && !from_outgoing) return;
 
   JointVector effort;
-  ReasonText objection{};
-  if (!fromMessage(message, scenario_.robot.size(), effort)) {
-    write(objection, "it commanded an effort that is not finite or of the wrong size");
-  } else if (const double largest = effort.cwiseAbs().maxCoeff(); largest > scenario_.baton.max_command) {
-    write(objection, "it commanded %.4g, above the scenario's max_command of %.4g", largest,
-          scenario_.baton.max_command);
-  }
+  const ReasonText objection = objectionTo(message, member, effort);
   const bool is_usable = objection.front() == '\0';
   if (!is_usable) {
     // It never reaches the integrator: the joints keep their torque for this step, and the next one is somebody else's.
@@ -63,8 +59,39 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
   proceed();
 }
 
+ReasonText Plant::objectionTo(const msg::JointCommand& message, int member, JointVector& effort) const {
+  ReasonText objection{};
+  if (message.effort().empty()) {
+    const ReasonText& cause = members_[static_cast<std::size_t>(member)].ails;
+    write(objection, "its law has no effort to give%s%s", cause.front() != '\0' ? ": " : "", cause.data());
+  } else if (const Reading reading = fromMessage(message, scenario_.robot.size(), effort); !reading) {
+    write(objection, "it sent a joint_command whose %s %s", reading.field, reading.wrong);
+  } else if (const double largest = effort.cwiseAbs().maxCoeff(); largest > scenario_.baton.max_command) {
+    write(objection, "it commanded %.4g, above the scenario's max_command of %.4g", largest,
+          scenario_.baton.max_command);
+  }
+  return objection;
+}
+
+void Plant::onBadInput(std::uint64_t step, const std::string& text) {
+  if (bad_input_ || master_.isOver()) return;
+  bad_input_ = {step, text};
+  endAtBadInput();
+}
+
+/// At the sample's step: a reference comes a step early, and until then nothing is wrong. So the run ends with the same
+/// bytes each time. A reset would wait for the sample.
+void Plant::endAtBadInput() {
+  if (bad_input_ && (reset_ || master_.step() >= bad_input_->step)) abort(bad_input_->text);
+}
+
 void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSample& sample) {
   const std::string name = status.name().c_str();
+  if (status.refused_topic().size() > 0) {
+    const std::string text =
+        badInputText(status.refused_topic().c_str(), status.refused_step(), status.refusal().c_str());
+    if (!text.empty()) onBadInput(status.refused_step(), text + " (" + name + " refused it)");
+  }
   const int member = memberCalled(name);
   if (status.state() == msg::SERVICE_READY) {
     if (status.plant() != service_.participant().self().prefix) {
@@ -114,6 +141,10 @@ void Plant::becomes(Member& member, const Speaker& speaker) {
 /// never returns by itself.
 void Plant::onControllerStatus(const msg::ControllerStatus& status, const dds::RawSample& sample) {
   const int member = memberCalled(status.name().c_str());
+  if (speaksFor(member, sample)) {
+    const bool ails = status.state() == msg::CONTROLLER_FAILED;
+    write(members_[static_cast<std::size_t>(member)].ails, "%s", ails ? status.text().c_str() : "");
+  }
   const bool stands_by = status.state() == msg::CONTROLLER_STANDBY || status.state() == msg::CONTROLLER_COLD;
   if (master_.isOver() || !stands_by) return;
   if (member == kBrake) return newcomerStandsBy(status, sample);

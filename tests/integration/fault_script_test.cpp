@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <tuple>
 
 #include "dds/typed.hpp"
 #include "mcap/reader.hpp"
@@ -139,6 +141,75 @@ TEST(FaultScript, AStuckForceStaysAsItWasUntilTheFaultIsOver) {
   ASSERT_GT(contacts[kFrom - 1].force()[2], 0.0) << "in contact";
   for (std::size_t step = kFrom; step < kUntil; ++step) EXPECT_EQ(contacts[step].force(), contacts[kFrom - 1].force());
   EXPECT_NE(contacts[kUntil].force(), contacts[kFrom - 1].force());
+}
+
+/// What its readers cannot use is the sender's fault, whatever the policy is for those who are late.
+struct BadSender {
+  std::string service;
+  std::string topic;
+  std::string field;
+};
+
+struct Policy {
+  std::string name;
+  std::string text;
+};
+const Policy kPolicies[] = {
+    {"wait", "late: {policy: wait}\n"},
+    {"abort", "late: {policy: abort, after_s: 10}\n"},
+    {"fallback", "late: {policy: fallback, after_s: 10}\nbaton: {fallback: [pd]}\n"},
+    {"realtime", "mode: realtime\nmax_missed_steps: 1000\nbaton: {fallback: [pd]}\n"},
+};
+
+class FaultOfASender : public ::testing::TestWithParam<std::tuple<BadSender, Policy>> {};
+
+TEST_P(FaultOfASender, EndsTheRunInItsNameAtItsStep) {
+  const auto& [sender, policy] = GetParam();
+  const Bench bench;
+  const Outcome outcome = runWith(
+      bench, "nan",
+      policy.text + "faults: [{do: nan, service: " + sender.service + ", topic: " + sender.topic + ", at_s: 0.2}]\n");
+  EXPECT_EQ(outcome.result.at("exit_code"), 4) << outcome.result;
+  const std::string reason = outcome.result.at("reason");
+  const std::string said = sender.service + " sent " + sender.topic + " of step " + std::to_string(kAt);
+  EXPECT_TRUE(reason.starts_with(said)) << reason;
+  EXPECT_NE(reason.find(sender.field + " is not finite"), std::string::npos) << reason;
+  const Finished events = bench.baton({"bag", "cat", outcome.recording, "--topics", "event"});
+  EXPECT_NE(events.out.find(said), std::string::npos) << events.out;
+  const auto& swaps = outcome.result.at("swaps");
+  EXPECT_TRUE(std::none_of(swaps.begin(), swaps.end(), [](const auto& swap) { return swap.at("incoming") == "pd"; }))
+      << "an innocent lost the baton: " << swaps;
+  if (policy.name != "realtime") {
+    EXPECT_EQ(outcome.result.at("steps"), kAt);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, FaultOfASender,
+                         ::testing::Combine(::testing::Values(BadSender{"trajectory", "reference", "position"},
+                                                              BadSender{"plant", "plant_state", "position"},
+                                                              BadSender{"environment", "contact", "force"}),
+                                            ::testing::ValuesIn(kPolicies)),
+                         [](const auto& given) {
+                           return std::get<0>(given.param).service + "_" + std::get<1>(given.param).name;
+                         });
+
+TEST(FaultScript, AHolderThatMeetsASingularityLosesTheBatonForThat) {
+  // At a reach of -0.55 m the tip is on the axis that the first joint turns about.
+  std::string text = shortContact("baton: {fallback: [pd]}\n");
+  text.erase(text.find("swaps:"), text.find("baton:") - text.find("swaps:"));
+  const std::string position = "[0.42, 0.15, 0.08]";
+  for (std::size_t at = text.find(position); at != std::string::npos; at = text.find(position)) {
+    text.replace(at, position.size(), "[0.4, 0.1, -0.55]");
+  }
+  const Bench bench;
+  const std::string recording = (bench.folder() / "singular.mcap").string();
+  const Finished run = bench.baton({"run", bench.write("singular.yaml", text), "--out", recording});
+  EXPECT_EQ(run.exit_code, 1) << run.out << run.err;
+  EXPECT_NE(run.out.find("its law has no effort to give: a singular configuration at step 0"), std::string::npos)
+      << run.out;
+  const Finished events = bench.baton({"bag", "cat", recording, "--topics", "event"});
+  EXPECT_NE(events.out.find("tracking: its law has no effort to give: a singular configuration"), std::string::npos)
+      << events.out;
 }
 
 TEST(FaultScript, AKilledRecorderLeavesAFileThatIsReadUpToTheFault) {

@@ -352,6 +352,9 @@ inline void fill(msg::ServiceStatus& m) {
   m.state(msg::SERVICE_FAILED);
   m.pid(-2'000'000'000);
   m.text(std::string(200, 't'));
+  m.refused_topic(std::string(64, 'r'));
+  m.refused_step(kId);
+  m.refusal(std::string(120, 'w'));
 }
 
 inline void fill(msg::Event& m) {

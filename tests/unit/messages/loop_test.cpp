@@ -296,7 +296,7 @@ TEST(LoopMessages, NoNumberOfAStateMayBeNotFinite) {
                                     m.tip_orientation(), m.tip_velocity(), m.tip_angular_velocity());
   expectEveryNumberChecked<msg::PlantState>(m, numbers, 3 * 3 + 3 + 4 + 6, [](const msg::PlantState& message) {
     RobotState state;
-    return fromMessage(message, 3, state);
+    return bool{fromMessage(message, 3, state)};
   });
 }
 
@@ -308,7 +308,7 @@ TEST(LoopMessages, NoNumberOfAContactMayBeNotFinite) {
   numbers.push_back(&m.penetration());
   expectEveryNumberChecked<msg::Contact>(m, numbers, 6 + 18 + 1, [](const msg::Contact& message) {
     Contact contact;
-    return fromMessage(message, contact);
+    return bool{fromMessage(message, contact)};
   });
 }
 
@@ -321,7 +321,7 @@ TEST(LoopMessages, NoNumberOfAReferenceMayBeNotFinite) {
                                     m.tip_angular_acceleration(), m.force(), m.moment());
   expectEveryNumberChecked<msg::Reference>(m, numbers, 3 * 3 + 3 + 4 + 12 + 6, [](const msg::Reference& message) {
     Reference reference;
-    return fromMessage(message, 3, reference);
+    return bool{fromMessage(message, 3, reference)};
   });
 }
 
@@ -331,8 +331,35 @@ TEST(LoopMessages, NoNumberOfACommandMayBeNotFinite) {
   toMessage(kStamp, "x", randomJointVector(generator, 3, 1.0), 0, m);
   expectEveryNumberChecked<msg::JointCommand>(m, numbersOfAll(m.effort()), 3, [](const msg::JointCommand& message) {
     JointVector effort;
-    return fromMessage(message, 3, effort);
+    return bool{fromMessage(message, 3, effort)};
   });
+}
+
+TEST(LoopMessages, WhatIsRefusedNamesItsFieldAndWhatIsWrongWithIt) {
+  std::mt19937 generator(15);
+  msg::Reference reference;
+  toMessage(kStamp, randomReference(generator, 3), reference);
+  Reference wanted;
+  EXPECT_EQ(fromMessage(reference, 3, wanted).text(), "");
+  EXPECT_EQ(fromMessage(reference, 4, wanted).text(), "position has not one entry a joint");
+  reference.tip_acceleration()[1] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(fromMessage(reference, 3, wanted).text(), "tip_acceleration is not finite");
+  reference.acceleration()[2] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(fromMessage(reference, 3, wanted).text(), "acceleration is not finite") << "the first one";
+
+  msg::PlantState plant;
+  toMessage(kStamp, randomState(generator, 3), "x", 0, plant);
+  plant.tip_orientation().w(2.0);
+  RobotState state;
+  EXPECT_EQ(fromMessage(plant, 3, state).text(), "tip_orientation is no unit quaternion");
+  msg::Contact contact;
+  contact.force_by_velocity()[8] = -std::numeric_limits<double>::infinity();
+  Contact touch;
+  EXPECT_EQ(fromMessage(contact, touch).text(), "force_by_velocity is not finite");
+  msg::JointCommand command;
+  command.effort({1.0, 2.0});
+  JointVector effort;
+  EXPECT_EQ(fromMessage(command, 3, effort).text(), "effort has not one entry a joint");
 }
 
 TEST(LoopMessages, AQuaternionThatIsNoRotationIsRefused) {
