@@ -247,16 +247,16 @@ void Service::runEnded(std::uint64_t step, bool clean) {
   });
 }
 
-std::string lossText(const std::string& topic, std::uint64_t lost, std::uint64_t unreadable,
+std::string lossText(const dds::TopicFacts& topic, std::uint64_t lost, std::uint64_t unreadable,
                      std::uint64_t of_strangers) {
   std::string text;
   const auto add = [&text](std::uint64_t count, const char* what) {
     if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + what;
   };
-  add(lost, " samples lost on the way");
+  add(topic.profile == dds::Profile::kStatus ? 0 : lost, " samples lost on the way");
   add(unreadable, " that could not be read");
   add(of_strangers, " of strangers, not heard");
-  return text.empty() ? text : topic + ": " + text;
+  return text.empty() ? text : std::string(topic.name) + ": " + text;
 }
 
 /// Zero for a request that is handled at once; nothing for one that is left out.

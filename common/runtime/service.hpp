@@ -201,8 +201,9 @@ class Service {
   ExitCode exit_code_ = ExitCode::kOk;
 };
 
-/// What an input did not take, as a sentence; empty when it took everything.
-[[nodiscard]] std::string lossText(const std::string& topic, std::uint64_t lost, std::uint64_t unreadable,
+/// What an input did not take, as a sentence; empty when it took everything. Of a status only the latest word counts,
+/// and what it replaced is not missing.
+[[nodiscard]] std::string lossText(const dds::TopicFacts& topic, std::uint64_t lost, std::uint64_t unreadable,
                                    std::uint64_t of_strangers);
 
 /// How a stream of a writer went, for the manifest.
@@ -252,9 +253,7 @@ void Service::input(const dds::Topic<T>& topic, const std::vector<std::string>& 
   require(
       topic.name, [raw = &reader->raw()] { return raw->matched(); }, writers);
   losses_.push_back([raw = reader.get(), facts = static_cast<const dds::TopicFacts&>(topic)] {
-    // Of a status only the latest word counts, and what it replaced is not missing.
-    return lossText(facts.name, facts.profile == dds::Profile::kStatus ? 0 : raw->raw().lost(), raw->rejected(),
-                    raw->raw().refused());
+    return lossText(facts, raw->raw().lost(), raw->rejected(), raw->raw().refused());
   });
   endpoints_.push_back(reader);
 }

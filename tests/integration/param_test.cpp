@@ -12,6 +12,24 @@
 namespace baton::test {
 namespace {
 
+TEST(Param, AGainBeyondAllMeasureCostsTheHolderTheBatonAndNotTheRun) {
+  const Bench bench;
+  std::string text = endlessContact("baton: {fallback: [tracking]}\n");  // and no max_command
+  const std::string active = "active: tracking";
+  text.replace(text.find(active), active.size(), "active: pd");
+  const LiveRun run(bench, text);
+  ASSERT_EQ(bench.baton({"param", "set", "pd", "kp=1e308"}).exit_code, 0);
+  EXPECT_TRUE(eventually([&] { return bench.batonJson({"status", "--json"}).at("holder") == "tracking"; }));
+  const std::uint64_t then = bench.batonJson({"status", "--json"}).at("step");
+  run.waitForStep(then + 100);
+  const nlohmann::json result = bench.batonJson({"down", "--json"});
+  EXPECT_EQ(result.at("state"), "stopped") << result;
+  ASSERT_FALSE(result.at("swaps").empty()) << result;
+  const std::string reason = result.at("swaps").at(0).at("reason");
+  EXPECT_TRUE(reason.find("max_command") != std::string::npos || reason.find("not finite") != std::string::npos)
+      << reason;
+}
+
 const std::string kCheckpoints = "recording: {checkpoint_s: 0.1}\n";
 
 /// The short scenario, waiting before its first step.
