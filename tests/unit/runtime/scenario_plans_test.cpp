@@ -134,5 +134,10 @@ INSTANTIATE_TEST_SUITE_P(
                  "not before that of the stop before", "'0.8'"}),
     [](const auto& bad) { return bad.param.name; });
 
+TEST(ScenarioEdit, AnEmptyListIsNamedAsOne) {
+  const std::string message = refusal([] { return editScenario("swaps: []\n", {{"swaps.0.to", "force"}}); });
+  EXPECT_NE(message.find("the list has no entries"), std::string::npos) << message;
+}
+
 }  // namespace
 }  // namespace baton
