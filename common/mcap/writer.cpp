@@ -11,7 +11,10 @@ namespace {
 
 constexpr std::size_t kMaxIds = std::numeric_limits<std::uint16_t>::max();
 
-std::size_t slot(ChannelId id) { return static_cast<std::size_t>(id) - 1; }
+template <class Id>
+std::size_t slot(Id id) {
+  return static_cast<std::size_t>(id) - 1;
+}
 
 WriterOptions checked(WriterOptions options) {
   if (options.chunk_bytes == 0 || options.chunk_bytes > kMaxChunkBytes) {
@@ -43,21 +46,22 @@ Writer::~Writer() {
 
 SchemaId Writer::addSchema(std::string_view name, std::string_view encoding, ByteView data) {
   file_.requireHealthy();
-  const auto same = std::find_if(schemas_.begin(), schemas_.end(), [&](const Schema& schema) {
-    return schema.name == name && schema.encoding == encoding && std::ranges::equal(schema.data, data);
+  const auto same = std::find_if(schemas_.begin(), schemas_.end(), [&](const SchemaState& state) {
+    return state.schema.name == name && state.schema.encoding == encoding &&
+           std::ranges::equal(state.schema.data, data);
   });
-  if (same != schemas_.end()) return same->id;
+  if (same != schemas_.end()) return same->schema.id;
   if (schemas_.size() == kMaxIds) throw UsageError("an MCAP file holds at most 65535 schemas");
-  Schema schema{.id = SchemaId{static_cast<std::uint16_t>(schemas_.size() + 1)},
-                .name = std::string(name),
-                .encoding = std::string(encoding),
-                .data = Bytes(data.begin(), data.end())};
-  Bytes record;  // not scratch_, which closing a chunk uses
-  appendSchema(record, schema);
-  makeRoom(record.size());
-  append(chunk_, record);
-  schemas_.push_back(std::move(schema));
-  return schemas_.back().id;
+  SchemaState state{.schema = {.id = SchemaId{static_cast<std::uint16_t>(schemas_.size() + 1)},
+                               .name = std::string(name),
+                               .encoding = std::string(encoding),
+                               .data = Bytes(data.begin(), data.end())}};
+  appendSchema(state.record, state.schema);
+  makeRoom(state.record.size());
+  append(chunk_, state.record);
+  state.declared_in = chunk_number_;
+  schemas_.push_back(std::move(state));
+  return schemas_.back().schema.id;
 }
 
 ChannelId Writer::addChannel(std::string_view topic, std::string_view message_encoding, SchemaId schema_id,
@@ -75,12 +79,31 @@ ChannelId Writer::addChannel(std::string_view topic, std::string_view message_en
                                  .message_encoding = std::string(message_encoding),
                                  .metadata = metadata},
                      .index = {.channel_id = id}};
-  Bytes record;
-  appendChannel(record, state.channel);
-  makeRoom(record.size());
-  append(chunk_, record);
+  appendChannel(state.record, state.channel);
+  makeRoom(state.record.size(), declarationBytes(state) - state.record.size());
   channels_.push_back(std::move(state));
+  declare(channels_.back());
   return id;
+}
+
+std::size_t Writer::declarationBytes(const ChannelState& state) const {
+  const SchemaId schema = state.channel.schema_id;
+  return state.record.size() + (schema == kNoSchema ? 0 : schemas_[slot(schema)].record.size());
+}
+
+/// In the current chunk, unless it has the declaration already.
+void Writer::declare(ChannelState& state) {
+  const auto declareOnce = [this](const Bytes& record, std::uint64_t& declared_in) {
+    const std::uint64_t before = std::exchange(declared_in, chunk_number_);
+    if (before == chunk_number_) return;
+    append(chunk_, record);
+    if (before != 0) repeated_bytes_ += record.size();
+  };
+  if (state.channel.schema_id != kNoSchema) {
+    SchemaState& schema = schemas_[slot(state.channel.schema_id)];
+    declareOnce(schema.record, schema.declared_in);
+  }
+  declareOnce(state.record, state.declared_in);
 }
 
 void Writer::write(ChannelId channel, std::uint32_t sequence, std::uint64_t log_time_ns, std::uint64_t publish_time_ns,
@@ -89,9 +112,12 @@ void Writer::write(ChannelId channel, std::uint32_t sequence, std::uint64_t log_
   if (slot(channel) >= channels_.size()) {
     throw UsageError("channel " + std::to_string(static_cast<unsigned>(channel)) + " was not added");
   }
-  makeRoom(kMessageHeadBytes + data.size());
   ChannelState& state = channels_[slot(channel)];
-  if (state.index.entries.empty()) chunk_channels_.push_back(channel);
+  makeRoom(kMessageHeadBytes + data.size(), declarationBytes(state));
+  if (state.index.entries.empty()) {
+    declare(state);
+    chunk_channels_.push_back(channel);
+  }
   state.index.entries.push_back({.log_time_ns = log_time_ns, .offset = chunk_.size()});
   appendMessage(chunk_, {.channel_id = channel,
                          .sequence = sequence,
@@ -173,13 +199,18 @@ WriterStatistics Writer::statistics() const {
 }
 
 /// Closes the current chunk when it has no room for this record, and makes sure that adding it cannot fail half-way.
-void Writer::makeRoom(std::size_t record_bytes) {
-  if (record_bytes > kMaxChunkBytes) {
-    throw UsageError("a record of " + std::to_string(record_bytes) + " bytes is above the limit of " +
+/// @param declaration_bytes  what may have to be repeated in front of it.
+void Writer::makeRoom(std::size_t record_bytes, std::size_t declaration_bytes) {
+  const std::size_t most = record_bytes + declaration_bytes;
+  if (most > kMaxChunkBytes) {
+    throw UsageError("a record of " + std::to_string(record_bytes) + " bytes with " +
+                     std::to_string(declaration_bytes) + " bytes of declarations is above the limit of " +
                      std::to_string(kMaxChunkBytes));
   }
-  if (!chunk_.empty() && chunk_.size() + record_bytes > options_.chunk_bytes) closeChunk();
-  chunk_.reserve(std::max(options_.chunk_bytes, chunk_.size() + record_bytes));
+  // Repeated declarations do not count: a schema larger than a chunk must not leave room for one message only.
+  const bool is_full = chunk_.size() - repeated_bytes_ + record_bytes > options_.chunk_bytes;
+  if (!chunk_.empty() && (is_full || chunk_.size() + most > kMaxChunkBytes)) closeChunk();
+  chunk_.reserve(std::max(options_.chunk_bytes, chunk_.size() + most));
 }
 
 void Writer::closeChunk() {
@@ -190,6 +221,8 @@ void Writer::closeChunk() {
     emit(chunk_);
   }
   chunk_.clear();
+  ++chunk_number_;
+  repeated_bytes_ = 0;
   writePending();
 }
 
@@ -277,7 +310,7 @@ void Writer::writeSummary() {
     for (const auto& item : items) append_item(summary, item);
     if (summary.size() > begin) groups.push_back({opcode, summary_start + begin, summary.size() - begin});
   };
-  group(Opcode::kSchema, schemas_, appendSchema);
+  group(Opcode::kSchema, schemas_, [](Bytes& out, const SchemaState& state) { appendSchema(out, state.schema); });
   group(Opcode::kChannel, channels_, [](Bytes& out, const ChannelState& state) { appendChannel(out, state.channel); });
   group(Opcode::kStatistics, std::span(&statistics, 1), appendStatistics);
   group(Opcode::kChunkIndex, chunk_indexes_, appendChunkIndex);

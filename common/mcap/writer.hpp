@@ -2,8 +2,9 @@
 ///
 /// Messages gather in a chunk; a full chunk is compressed, given a CRC, indexed and handed over in one go. What a
 /// process killed at any instant leaves behind is readable up to its last whole chunk, because schemas and channels go
-/// into the data before their first message as well as into the summary at the end. Nothing is allocated per message or
-/// per chunk once the buffers have grown, but for one index entry a chunk.
+/// into the data before their first message as well as into the summary at the end. Each chunk declares the channels
+/// it has messages of, and their schemas: no chunk needs another, so a damaged one costs what is in it and no more.
+/// Nothing is allocated per message or per chunk once the buffers have grown, but for one index entry a chunk.
 ///
 /// One thread at a time. The bytes depend on the calls only: no clock, no random number.
 #pragma once
@@ -27,11 +28,12 @@ struct WriterOptions {
   std::string profile;            // "": no requirements beyond the specification
   std::string library = "baton";  // who wrote the file, with its version
   Compression compression = Compression::kZstd;
-  int compression_level = 1;           // see Compressor; zstd 3 makes a run's file 3 % smaller, in half as long again
-  std::size_t chunk_bytes = 1U << 20;  // a chunk is closed before it grows above this; a larger message gets its own
-  bool has_crc = true;                 // CRCs of chunks, attachments, data section and summary
-  bool sync_chunks = false;            // each chunk waits for the storage device
-  bool sync_on_close = true;           // close() waits for the storage device
+  int compression_level = 1;  // see Compressor; zstd 3 makes a run's file 3 % smaller, in half as long again
+  // A chunk is closed before it grows above this, not counting declarations it repeats; a larger message gets its own.
+  std::size_t chunk_bytes = 1U << 20;
+  bool has_crc = true;        // CRCs of chunks, attachments, data section and summary
+  bool sync_chunks = false;   // each chunk waits for the storage device
+  bool sync_on_close = true;  // close() waits for the storage device
   OutputFile::IfExists if_exists = OutputFile::IfExists::kRefuse;
 };
 
@@ -91,13 +93,22 @@ class Writer {
   [[nodiscard]] WriterStatistics statistics() const;
 
  private:
+  struct SchemaState {
+    Schema schema;
+    Bytes record{};
+    std::uint64_t declared_in = 0;  // the last chunk that has the record
+  };
   struct ChannelState {
     Channel channel;
-    MessageIndex index;  // of the current chunk
+    Bytes record{};
+    std::uint64_t declared_in = 0;
+    MessageIndex index{};  // of the current chunk
     std::uint64_t count = 0;
   };
 
-  void makeRoom(std::size_t record_bytes);
+  [[nodiscard]] std::size_t declarationBytes(const ChannelState& state) const;
+  void declare(ChannelState& state);
+  void makeRoom(std::size_t record_bytes, std::size_t declaration_bytes = 0);
   void closeChunk();
   void writeChunk();
   void writePending();
@@ -110,7 +121,7 @@ class Writer {
   bool is_closed_ = false;
   std::uint32_t data_crc_ = 0;
 
-  std::vector<Schema> schemas_;         // [id - 1]
+  std::vector<SchemaState> schemas_;    // [id - 1]
   std::vector<ChannelState> channels_;  // [id - 1]
   std::vector<ChunkIndex> chunk_indexes_;
   std::vector<AttachmentIndex> attachment_indexes_;
@@ -122,6 +133,8 @@ class Writer {
   std::uint64_t end_time_ns_ = 0;
 
   Bytes chunk_;  // records of the current chunk
+  std::uint64_t chunk_number_ = 1;
+  std::size_t repeated_bytes_ = 0;  // declarations in the current chunk that an earlier one has too
   std::uint64_t chunk_messages_ = 0;
   std::uint64_t chunk_start_time_ns_ = 0;
   std::uint64_t chunk_end_time_ns_ = 0;
