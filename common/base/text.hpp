@@ -20,6 +20,10 @@ namespace baton {
   return result;
 }
 
+/// Fit for a terminal and for one line, and still told from other text: \n, \x1b and \u009b for control characters,
+/// \xff for bytes that are not UTF-8. Line breaks stay where they are wanted.
+[[nodiscard]] std::string escaped(std::string_view text, bool keeps_lines = false);
+
 /// A file name without a folder that ends in `ending` (".mcap") and has at least one character before it.
 [[nodiscard]] inline bool isFileName(std::string_view name, std::string_view ending) {
   return name.size() > ending.size() && name.ends_with(ending) && name.front() != '.' &&

@@ -12,6 +12,18 @@ TEST(Text, IsShownOnOneLineWithoutControlCharacters) {
   for (const char* text : {"\n", "a\tb", "\x1b", "a\x7f"}) EXPECT_TRUE(hasControlCharacters(text));
 }
 
+TEST(Text, IsEscapedSoThatItChangesNoTerminalAndNoLine) {
+  EXPECT_EQ(escaped("plain, \u00fcmlaut \U0001f916"), "plain, \u00fcmlaut \U0001f916");
+  EXPECT_EQ(escaped("a\x1b[31m\a\nb\x7f"), "a\\x1b[31m\\x07\\nb\\x7f");
+  EXPECT_EQ(escaped("a\nb\t", true), "a\nb\\x09");
+  EXPECT_EQ(escaped("\xc2\x9b"
+                    "2J"),
+            "\\u009b2J")
+      << "the same as ESC [ to some terminals";
+  EXPECT_EQ(escaped("\xff\xc3(\xed\xa0\x80\xc0\x80\xe2\x82"), "\\xff\\xc3(\\xed\\xa0\\x80\\xc0\\x80\\xe2\\x82");
+  EXPECT_EQ(escaped(std::string_view("\0", 1)), "\\x00");
+}
+
 TEST(Text, AFileNameLeadsToNoOtherFolder) {
   EXPECT_TRUE(isFileName("a.mcap", ".mcap"));
   EXPECT_TRUE(isFileName("demo step 3.mcap", ".mcap"));
