@@ -1,33 +1,21 @@
 #include "mcap/copy.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 namespace baton::mcap {
 namespace {
 
-/// What was lost, once for each place: passes over the file come across the same.
-class Losses {
- public:
-  void add(const Damage& damage) { by_place_.try_emplace(damage.offset, damage); }
-  template <class Work>
-  void guard(std::uint64_t offset, std::uint64_t length, Work work) {
-    try {
-      work();
-    } catch (const FormatError& error) {
-      add({offset, length, error.what()});
-    }
+/// work(), and what keeps it from reading a record there.
+template <class Work>
+void guard(std::set<Damage>& losses, std::uint64_t offset, std::uint64_t length, Work work) {
+  try {
+    work();
+  } catch (const FormatError& error) {
+    losses.insert({.offset = offset, .length = length, .reason = error.what()});
   }
-  [[nodiscard]] std::vector<Damage> list() const {
-    std::vector<Damage> list;
-    for (const auto& [offset, damage] : by_place_) list.push_back(damage);
-    return list;
-  }
-  [[nodiscard]] bool empty() const { return by_place_.empty(); }
-
- private:
-  std::map<std::uint64_t, Damage> by_place_;
-};
+}
 
 }  // namespace
 
@@ -76,13 +64,13 @@ void Copier::finish() {
 
 Recovery recover(const std::filesystem::path& in, const std::filesystem::path& out, const RecoverOptions& options) {
   Recovery result;
-  Losses losses;
+  std::set<Damage> losses;  // once each: passes over the file come across the same
   ReaderOptions reading = options.reader;
-  reading.on_damage = [&losses](const Damage& damage) { losses.add(damage); };
+  reading.on_damage = [&losses](const Damage& damage) { losses.insert(damage); };
   const auto tell = [&options](double part) {
     if (options.progress) options.progress(part);
   };
-  // A file without an index is read twice: its first half of the work is to find what is there.
+  // The file is read twice: the first half of the work is to find what is there.
   double begun = 0.0;
   reading.on_progress = [&](std::uint64_t done, std::uint64_t of) {
     begun = 0.5;
@@ -90,9 +78,9 @@ Recovery recover(const std::filesystem::path& in, const std::filesystem::path& o
   };
   const Reader reader(in, reading);
   result.info = reader.info();
-  if (!result.info.is_complete && !result.info.has_all_data) {
+  if (!result.info.is_complete && (!result.info.has_all_data || result.info.trailing_bytes > 0)) {
     const std::uint64_t end = result.info.complete_bytes;
-    losses.add({end, result.info.file_bytes - end, result.info.problem});
+    losses.insert({.offset = end, .length = result.info.file_bytes - end, .reason = result.info.problem});
   }
 
   WriterOptions writing = options.writer;
@@ -107,11 +95,11 @@ Recovery recover(const std::filesystem::path& in, const std::filesystem::path& o
   // Last, when it is known whether something was lost, which is as true when it is one of them: first try them all.
   std::vector<Metadata> metadata;
   for (const MetadataIndex& index : reader.metadataIndexes()) {
-    losses.guard(index.offset, index.length, [&] { metadata.push_back(reader.readMetadata(index)); });
+    guard(losses, index.offset, index.length, [&] { metadata.push_back(reader.readMetadata(index)); });
   }
   std::vector<const AttachmentIndex*> attachments;
   for (const AttachmentIndex& index : reader.attachments()) {
-    losses.guard(index.offset, index.length, [&] {
+    guard(losses, index.offset, index.length, [&] {
       (void)reader.readAttachment(index);
       attachments.push_back(&index);
     });
@@ -119,7 +107,8 @@ Recovery recover(const std::filesystem::path& in, const std::filesystem::path& o
   // Bytes between chunks were changed: whether one of them had been a chunk's first, nobody can tell.
   const bool is_as_written = reader.dataCrcMatches().value_or(true);
   const auto nameOf = [&](const std::string& name) {
-    return (losses.empty() && is_as_written) || !options.lossy_name ? name : options.lossy_name(name);
+    const bool is_one = losses.empty() && is_as_written && result.info.beginnings.size() == 1;
+    return is_one || !options.lossy_name ? name : options.lossy_name(name);
   };
   for (const Metadata& one : metadata) copy.metadata(nameOf(one.name), one.values);
   for (const AttachmentIndex* index : attachments) {
@@ -128,9 +117,10 @@ Recovery recover(const std::filesystem::path& in, const std::filesystem::path& o
   copy.finish();
   result.attachments = attachments.size();
   result.metadata = metadata.size();
-  result.lost = losses.list();
+  result.lost.assign(losses.begin(), losses.end());
   result.is_changed = !is_as_written;
-  result.is_whole = result.lost.empty() && is_as_written && result.info.is_complete && result.info.problem.empty();
+  result.is_whole = result.lost.empty() && is_as_written && result.info.is_complete && result.info.problem.empty() &&
+                    result.info.contradictions.empty();
   return result;
 }
 

@@ -58,7 +58,8 @@ struct Recovery {
 struct RecoverOptions {
   ReaderOptions reader{};  // its on_damage and on_progress are not called
   WriterOptions writer{};  // its profile becomes the file's
-  /// The name, in a copy from which something is missing, of a metadata record or attachment; as it was when not given.
+  /// The name, in a copy from which something is missing or that joins recordings, of a metadata record or attachment;
+  /// as it was when not given.
   std::function<std::string(const std::string&)> lossy_name{};
   std::function<void(double)> progress{};  // told which part of the work is done, from 0 to 1
 };

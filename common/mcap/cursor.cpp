@@ -64,7 +64,7 @@ bool MessageCursor::next(MessageView& message) {
       if (queue_.empty() || current_ < queue_.front()) {
         const Entry& entry = loaded.entries[loaded.position++];
         const Message found = decodeMessage(loaded.records.subspan(entry.offset, entry.length));
-        const Route& route = routes_[static_cast<std::size_t>(found.channel_id)];
+        const Route& route = routes_[static_cast<std::size_t>(entry.channel)];
         message = {.channel = route.channel,
                    .schema = route.schema,
                    .sequence = found.sequence,
@@ -102,10 +102,18 @@ void MessageCursor::load(Candidate& candidate) {
 
 void MessageCursor::collect(const Extent& extent, LoadedExtent& loaded) const {
   ByteReader in(loaded.records);
-  while (const std::optional<RecordView> record = nextRecord(in)) {
+  std::map<ChannelId, std::optional<ChannelId>> meanings;  // where they are not those of the index
+  auto change = extent.meanings.begin();
+  for (std::size_t at = 0; const std::optional<RecordView> record = nextRecord(in); at = in.position()) {
     if (record->opcode != Opcode::kMessage) continue;
     const Message message = decodeMessage(record->body);
-    const auto id = static_cast<std::size_t>(message.channel_id);
+    for (; change != extent.meanings.end() && change->from <= at; ++change) meanings[change->id] = change->means;
+    ChannelId channel = message.channel_id;
+    if (const auto other = meanings.find(channel); other != meanings.end()) {
+      if (!other->second) continue;  // it has none, which was reported when the file was indexed
+      channel = *other->second;
+    }
+    const auto id = static_cast<std::size_t>(channel);
     if (id >= routes_.size() || routes_[id].channel == nullptr) {
       throw FormatError("a message belongs to channel " + std::to_string(id) + ", which is not known");
     }
@@ -119,7 +127,8 @@ void MessageCursor::collect(const Extent& extent, LoadedExtent& loaded) const {
     if (!routes_[id].is_wanted || !is_in_time) continue;
     loaded.entries.push_back({.log_time_ns = message.log_time_ns,
                               .offset = in.position() - record->body.size(),
-                              .length = record->body.size()});
+                              .length = record->body.size(),
+                              .channel = channel});
   }
   const auto byTime = [](const Entry& a, const Entry& b) { return a.log_time_ns < b.log_time_ns; };
   if (filter_.order == MessageFilter::Order::kLogTime && !std::ranges::is_sorted(loaded.entries, byTime)) {

@@ -53,6 +53,7 @@ class MessageCursor {
     std::uint64_t log_time_ns;
     std::size_t offset;  // of the message's body in the records
     std::size_t length;
+    ChannelId channel;  // in the index
   };
   struct LoadedExtent {
     Buffer storage;

@@ -1,10 +1,21 @@
 #include "mcap/extent.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "mcap/crc.hpp"
 
 namespace baton::mcap {
+
+void ExtentLoader::allow(std::uint64_t plain_bytes) {
+  inflated_bytes_ += plain_bytes;
+  const std::uint64_t most = std::max(options_.max_inflated_bytes, kMostInflation * file_.size());
+  if (inflated_bytes_ <= most) return;
+  throw UsageError(file_.path().string() + ": expected at most " + std::to_string(most >> 20) +
+                   " MiB of decompressed data in a file of " + std::to_string(file_.size()) +
+                   " bytes, found more: it may be made to exhaust its reader. If you trust it, `mcap decompress` makes "
+                   "a copy that is read without a limit");
+}
 
 ByteView ExtentLoader::load(const Extent& extent, Buffer& storage) {
   if (extent.length > options_.max_chunk_bytes) {
@@ -35,6 +46,7 @@ ByteView ExtentLoader::load(const Extent& extent, Buffer& storage) {
     }
     std::swap(packed_, storage);
   } else {
+    allow(chunk.plain_size);
     records = decompressor_.decompress(compression, records, static_cast<std::size_t>(chunk.plain_size), storage);
   }
   if (options_.check_crc && chunk.plain_crc != 0) {

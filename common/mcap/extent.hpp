@@ -11,7 +11,7 @@ class ExtentLoader {
   ExtentLoader(const InputFile& file, const ReaderOptions& options) : file_(file), options_(options) {}
 
   /// The extent's records, decompressed, in `storage`. Throws FormatError, without place, when lengths or the CRC are
-  /// wrong: run it inside guarded().
+  /// wrong: run it inside guarded(); and UsageError when the file decompresses to more than the options allow.
   [[nodiscard]] ByteView load(const Extent& extent, Buffer& storage);
 
   /// Runs work() on an extent. A FormatError in it goes to options.on_damage (false is returned) or on to the caller,
@@ -27,14 +27,17 @@ class ExtentLoader {
         throw FormatError(file_.path().string() + ": " + what + " at byte " + std::to_string(extent.offset) + ": " +
                           error.what());
       }
-      options_.on_damage({extent.offset, extent.length, error.what()});
+      options_.on_damage({.offset = extent.offset, .length = extent.length, .reason = error.what()});
       return false;
     }
   }
 
  private:
+  void allow(std::uint64_t plain_bytes);
+
   const InputFile& file_;
   const ReaderOptions& options_;
+  std::uint64_t inflated_bytes_ = 0;  // in all
   Decompressor decompressor_;
   Buffer packed_;
 };

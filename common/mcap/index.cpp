@@ -1,6 +1,7 @@
 #include "mcap/index.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "mcap/crc.hpp"
 
@@ -10,12 +11,65 @@ namespace {
 constexpr std::size_t kWindowBytes = 16 << 10;
 constexpr std::uint64_t kTailBytes = kFooterBytes + kMagic.size();
 
-/// A summary is trusted only when what it lists accounts for the whole data section: each piece inside, none
+std::string beginOf(const InputFile& file) {
+  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 64)), '\0');
+  file.read(0, std::as_writable_bytes(std::span(begin)));
+  return begin;
+}
+
+/// Files that are given in the place of a recording: what they are, and what to do.
+std::string whatBeginsWith(const std::string& begin) {
+  if (begin.empty()) return "it is empty";
+  if (begin.starts_with("SQLite format 3")) {
+    return "it is an SQLite database, as rosbag2 records in (.db3): `ros2 bag convert` or `mcap convert` makes an MCAP "
+           "file of it";
+  }
+  if (begin.starts_with("#ROSBAG V")) return "it is a ROS 1 bag: `mcap convert` makes an MCAP file of it";
+  const std::size_t text = std::min(begin.find_first_not_of(" \t\r\n\xef\xbb\xbf"), begin.size());
+  if (begin[std::min(text, begin.size() - 1)] == '<') {
+    return "it is XML, as a robot description (URDF) is; a recording ends in .mcap";
+  }
+  if (begin.starts_with("\x28\xb5\x2f\xfd") || begin.starts_with("\x1f\x8b")) {
+    return "it is a compressed file: decompress it with zstd or gzip first";
+  }
+  return "it does not begin with the MCAP magic";
+}
+
+/// What a summary lists of the data section.
+struct Piece {
+  std::uint64_t offset = 0;
+  std::uint64_t length = 0;  // of the record
+  Opcode kind{};
+  std::uint64_t indexes_length = 0;  // of the message indexes after it
+  bool operator<(const Piece& other) const { return offset < other.offset; }
+};
+
+/// The record that a piece claims, as "a Chunk of 52 bytes at byte 29", is there.
+bool isThere(const InputFile& file, const Piece& piece, std::uint64_t data_end, SummaryProblem& problem) {
+  std::optional<RecordPlace> place;
+  if (piece.offset < data_end) place = RecordWalk(file, piece.offset, data_end).next();
+  const bool is_right = place && place->opcode == piece.kind && place->length() == piece.length &&
+                        piece.indexes_length <= data_end - place->end();
+  if (is_right) return true;
+  const std::string kind = opcodeName(piece.kind);
+  problem = {"its summary lists a record " + kind + " of " + std::to_string(piece.length) + " bytes at byte " +
+             std::to_string(piece.offset) + ", where "};
+  if (!place || place->opcode != piece.kind) {
+    problem.text += "none begins";
+  } else if (place->length() != piece.length) {
+    problem.text += "the one that is there has " + std::to_string(place->length());
+  } else {
+    problem.text += std::to_string(piece.indexes_length) + " bytes of message indexes cannot follow";
+  }
+  return false;
+}
+
+/// A summary is trusted only when what it lists accounts for the whole data section: each piece there, none
 /// overlapping, and between them only records that carry no data. So an index that leaves out messages is never
 /// believed.
-bool coversData(const InputFile& file, std::vector<std::pair<std::uint64_t, std::uint64_t>> pieces,
-                std::uint64_t data_begin, std::uint64_t summary_start, SummaryProblem& problem) {
-  std::ranges::sort(pieces);
+bool coversData(const InputFile& file, std::vector<Piece> pieces, std::uint64_t data_begin, std::uint64_t summary_start,
+                SummaryProblem& problem) {
+  std::ranges::sort(pieces, std::less());
   std::uint64_t position = data_begin;
   bool has_data_end = false;
   const auto gapIsQuiet = [&](std::uint64_t end) {
@@ -39,13 +93,14 @@ bool coversData(const InputFile& file, std::vector<std::pair<std::uint64_t, std:
     if (!walk.problem().empty()) problem = {"its summary does not fit its data: " + walk.problem()};
     return walk.problem().empty();
   };
-  for (const auto& [offset, length] : pieces) {
-    if (offset < position || offset > summary_start || length > summary_start - offset) {
-      problem = {"its summary lists data at byte " + std::to_string(offset) + " that cannot be there"};
+  for (const Piece& piece : pieces) {
+    if (!isThere(file, piece, summary_start, problem)) return false;
+    if (piece.offset < position) {
+      problem = {"its summary lists the data at byte " + std::to_string(piece.offset) + " twice"};
       return false;
     }
-    if (!gapIsQuiet(offset)) return false;
-    position = offset + length;
+    if (!gapIsQuiet(piece.offset)) return false;
+    position = piece.offset + piece.length + piece.indexes_length;
   }
   if (!gapIsQuiet(summary_start)) return false;
   if (!has_data_end) problem = {"its summary does not follow the end of its data"};
@@ -155,7 +210,7 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
     }
 
     FileIndex index;
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> pieces;
+    std::vector<Piece> pieces;
     bool has_statistics = false;
     ByteReader in(bytes.first(static_cast<std::size_t>(footer_at - footer.summary_start)));
     while (const std::optional<RecordView> record = nextRecord(in)) {
@@ -181,21 +236,29 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
                         .start_time_ns = chunk.start_time_ns,
                         .end_time_ns = chunk.end_time_ns};
           for (const auto& [id, offset] : chunk.message_index_offsets) extent.channels.push_back(id);
-          if (chunk.chunk_length > file.size() || chunk.message_index_length > file.size()) {
-            throw FormatError("a chunk is larger than the file");
-          }
-          pieces.emplace_back(extent.offset, extent.length + chunk.message_index_length);
+          pieces.push_back({.offset = extent.offset,
+                            .length = extent.length,
+                            .kind = Opcode::kChunk,
+                            .indexes_length = chunk.message_index_length});
           index.extents.push_back(std::move(extent));
           break;
         }
         case Opcode::kAttachmentIndex:
           index.attachments.push_back(decodeAttachmentIndex(record->body));
-          pieces.emplace_back(index.attachments.back().offset, index.attachments.back().length);
+          pieces.push_back({.offset = index.attachments.back().offset,
+                            .length = index.attachments.back().length,
+                            .kind = Opcode::kAttachment});
           break;
         case Opcode::kMetadataIndex:
           index.metadata.push_back(decodeMetadataIndex(record->body));
-          pieces.emplace_back(index.metadata.back().offset, index.metadata.back().length);
+          pieces.push_back({.offset = index.metadata.back().offset,
+                            .length = index.metadata.back().length,
+                            .kind = Opcode::kMetadata});
           break;
+        case Opcode::kMessage:
+        case Opcode::kChunk:
+        case Opcode::kAttachment:
+        case Opcode::kMetadata: throw FormatError("it holds data: a record " + opcodeName(record->opcode));
         default: break;
       }
     }
@@ -221,16 +284,38 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
   std::array<std::byte, kMagic.size()> magic{};
   if (file.size() >= kMagic.size()) file.read(0, magic);
   if (magic != kMagic) {
-    throw FormatError(file.path().string() + " is not an MCAP recording: it does not begin with the MCAP magic");
+    throw FormatError(file.path().string() + " is not an MCAP recording: " + whatBeginsWith(beginOf(file)));
   }
   SummaryProblem problem;
-  if (std::optional<FileIndex> index = readSummary(file, options, problem)) return std::move(*index);
-  FileIndex index = scanFile(file, options);
+  const std::optional<FileIndex> summary = readSummary(file, options, problem);
+  if (summary) {
+    // Read all of it: only then is it known that no chunk holds other messages than the summary says.
+    std::vector<Damage> damage;
+    ReaderOptions tolerant = options;
+    tolerant.on_damage = [&damage](const Damage& found) { damage.push_back(found); };
+    FileIndex found = scanFile(file, tolerant, &*summary);
+    const auto lost = std::ranges::find_if(damage, [](const Damage& one) { return one.messages > 0; });
+    problem.text = lost == damage.end() ? contradictionOf(*summary, found, !damage.empty())
+                                        : "its summary is not that of its data: " + describe(*lost);
+    if (problem.text.empty()) return *summary;
+    if (options.on_damage || damage.empty()) {
+      for (const Damage& one : damage) options.on_damage(one);
+      if (found.info.problem.empty()) found.info.problem = problem.text;
+      return found;
+    }
+  }
+  FileIndex index = scanFile(file, options, summary ? &*summary : nullptr);
   if (index.info.problem.empty()) {
     index.info.problem = problem.text;
     index.info.is_unindexed = problem.is_omission;
   }
   return index;
+}
+
+std::string describe(const Damage& damage) {
+  if (damage.messages > 0) return std::to_string(damage.messages) + " " + damage.reason;
+  return std::to_string(damage.length) + " bytes at byte " + std::to_string(damage.offset) +
+         " cannot be read: " + damage.reason;
 }
 
 }  // namespace baton::mcap

@@ -1,5 +1,5 @@
-/// What a recording holds and where: taken from its summary when that can be trusted, else found by reading the file
-/// from its start, which also works on a file that was cut off.
+/// What a recording holds and where: found by reading the file from its start, which also works on a file that was cut
+/// off, and taken from its summary where the data agree with it.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,29 @@ namespace baton::mcap {
 /// A stretch of the file that cannot be used, and why.
 struct Damage {
   std::uint64_t offset = 0;
-  std::uint64_t length = 0;
+  std::uint64_t length = 0;  // 0: all bytes could be read
   std::string reason{};
+  std::uint64_t messages = 0;  // that are lost although their bytes could be read
+  auto operator<=>(const Damage&) const = default;
 };
+/// In a sentence: what is lost, where and why.
+[[nodiscard]] std::string describe(const Damage& damage);
 
 struct ReaderOptions {
   /// Records and decompressed chunks above this are refused: no damaged length can exhaust the memory.
   std::uint64_t max_chunk_bytes = std::uint64_t{1} << 30;
+  /// A file that decompresses to more than this, and to more than kMostInflation times its size, is refused: a few
+  /// hundred bytes can claim gigabytes.
+  std::uint64_t max_inflated_bytes = std::uint64_t{2} << 30;
   bool check_crc = true;  // of chunks, attachments and summary
   /// When given, a damaged chunk is reported here and left out. Otherwise it is thrown as FormatError.
   std::function<void(const Damage&)> on_damage{};
-  /// Told, chunk by chunk, how many bytes have been read of how many while a file without a summary is indexed.
+  /// Told, chunk by chunk, how many bytes have been read of how many while a file is indexed.
   std::function<void(std::uint64_t, std::uint64_t)> on_progress{};
 };
+
+/// No honest recording reaches it: compressed telemetry has 3 to 60, with the index of its messages in the file.
+inline constexpr std::uint64_t kMostInflation = 500;
 
 struct FileInfo {
   Header header{};
@@ -37,9 +47,14 @@ struct FileInfo {
   bool is_complete = false;          // it ends as a finished recording does
   std::uint64_t complete_bytes = 0;  // up to here everything is a whole record; file_bytes when is_complete
   bool has_all_data = false;         // its data section ends as it should: if it was cut, then only in its index
-  bool has_summary = false;          // the index came from the file's summary, not from reading the whole file
+  bool has_summary = false;          // the index is the file's own summary, which its data agree with
+  std::uint64_t trailing_bytes = 0;  // after its end, and of no recording
   std::string problem{};      // where it was cut and why, or why its summary was not used; empty when all is well
   bool is_unindexed = false;  // the problem is only that the summary leaves out what the format lets it leave out
+  /// Where the file contradicts itself, a sentence each: ids with two meanings, indexes of other messages than there
+  /// are, recordings one after another. All of it could be read, as the data have it.
+  std::vector<std::string> contradictions{};
+  std::vector<std::uint64_t> beginnings{0};  // of recordings in the file: several, when files were joined
 };
 
 /// A stretch of the file that holds messages: a chunk, or consecutive records outside of any chunk.
@@ -50,6 +65,14 @@ struct Extent {
   std::uint64_t start_time_ns = 0;
   std::uint64_t end_time_ns = 0;
   std::vector<ChannelId> channels{};  // with a message in it; empty when not known
+
+  /// From this place on, in its records, a channel's id means another channel of the index, or none.
+  struct Meaning {
+    std::uint64_t from = 0;
+    ChannelId id{};
+    std::optional<ChannelId> means{};
+  };
+  std::vector<Meaning> meanings{};  // where the id is not that of the index; by place
 };
 
 struct FileIndex {
@@ -62,7 +85,8 @@ struct FileIndex {
   std::vector<MetadataIndex> metadata{};
 };
 
-/// Throws FormatError when the file is not MCAP, or is damaged before its end (see ReaderOptions::on_damage).
+/// Reads the file from its start, and takes the index of its summary only when the data agree with it. Throws
+/// FormatError when the file is not MCAP, or is damaged before its end (see ReaderOptions::on_damage).
 [[nodiscard]] FileIndex indexFile(const InputFile& file, const ReaderOptions& options);
 
 /// Why a summary is not used.
@@ -74,7 +98,13 @@ struct SummaryProblem {
 /// The two ways, for indexFile: nothing when the file has no summary or one that cannot be used, `problem` says why.
 [[nodiscard]] std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions& options,
                                                    SummaryProblem& problem);
-[[nodiscard]] FileIndex scanFile(const InputFile& file, const ReaderOptions& options);
+/// @param summary  declares the channels that the data do not declare; may be null.
+[[nodiscard]] FileIndex scanFile(const InputFile& file, const ReaderOptions& options,
+                                 const FileIndex* summary = nullptr);
+
+/// What a summary says that the data do not, in a sentence; empty when they agree. @param found  by a scan.
+/// @param is_damaged  the scan could not read all of the data, so that it may have found less than there was.
+[[nodiscard]] std::string contradictionOf(const FileIndex& summary, const FileIndex& found, bool is_damaged);
 
 /// A record's place in the file.
 struct RecordPlace {

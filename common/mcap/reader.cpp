@@ -9,7 +9,7 @@ namespace baton::mcap {
 namespace {
 
 /// The record an index points at, checked to be what the index says.
-RecordPlace placeOf(const InputFile& file, Opcode opcode, std::uint64_t offset, std::uint64_t length) {
+RecordPlace recordAt(const InputFile& file, Opcode opcode, std::uint64_t offset, std::uint64_t length) {
   std::optional<RecordPlace> place;
   if (offset <= file.size() && length <= file.size() - offset) place = RecordWalk(file, offset, offset + length).next();
   if (!place || place->opcode != opcode || place->length() != length) {
@@ -25,7 +25,7 @@ Reader::Reader(const std::filesystem::path& path, ReaderOptions options)
     : options_(std::move(options)), file_(path), index_(indexFile(file_, options_)) {}
 
 Bytes Reader::readAttachment(const AttachmentIndex& attachment) const {
-  const RecordPlace place = placeOf(file_, Opcode::kAttachment, attachment.offset, attachment.length);
+  const RecordPlace place = recordAt(file_, Opcode::kAttachment, attachment.offset, attachment.length);
   // Asked for by name, so the file's size is limit enough.
   ReaderOptions options = options_;
   options.max_chunk_bytes = file_.size();
@@ -41,7 +41,7 @@ Bytes Reader::readAttachment(const AttachmentIndex& attachment) const {
 }
 
 Metadata Reader::readMetadata(const MetadataIndex& index) const {
-  const RecordPlace place = placeOf(file_, Opcode::kMetadata, index.offset, index.length);
+  const RecordPlace place = recordAt(file_, Opcode::kMetadata, index.offset, index.length);
   return decodeRecord(file_, place, options_, decodeMetadata);
 }
 
@@ -63,8 +63,20 @@ void Reader::forEachMessage(const MessageFilter& filter,
 }
 
 std::optional<bool> Reader::dataCrcMatches() const {
+  std::optional<bool> all;
+  for (std::size_t i = 0; i < info().beginnings.size(); ++i) {
+    const std::uint64_t end = i + 1 < info().beginnings.size() ? info().beginnings[i + 1] : file_.size();
+    const std::optional<bool> one = dataCrcMatches(info().beginnings[i], end);
+    if (one == false) return false;
+    if (one) all = true;
+  }
+  return all;
+}
+
+/// Of one of the recordings in the file.
+std::optional<bool> Reader::dataCrcMatches(std::uint64_t begin, std::uint64_t end) const {
   constexpr std::uint64_t kBlockBytes = 1 << 20;
-  RecordWalk walk(file_, kMagic.size(), file_.size());
+  RecordWalk walk(file_, begin + kMagic.size(), end);
   std::optional<RecordPlace> place = walk.next();
   while (place && place->opcode != Opcode::kDataEnd) place = walk.next();
   if (!place) {
@@ -75,7 +87,7 @@ std::optional<bool> Reader::dataCrcMatches() const {
   if (data_end.data_crc == 0) return std::nullopt;
   Buffer storage;
   std::uint32_t crc = 0;
-  for (std::uint64_t offset = 0; offset < place->offset; offset += kBlockBytes) {
+  for (std::uint64_t offset = begin; offset < place->offset; offset += kBlockBytes) {
     const std::span<std::byte> block =
         storage.resize(static_cast<std::size_t>(std::min(kBlockBytes, place->offset - offset)));
     file_.read(offset, block);

@@ -21,8 +21,9 @@ namespace baton::mcap {
 
 class Reader {
  public:
-  /// Throws UnavailableError when the file cannot be opened, FormatError when it is not MCAP, and, where it has no
-  /// trustworthy summary and is read from its start, at the first damaged chunk (see ReaderOptions::on_damage).
+  /// Reads the whole file once, so that no index is taken that contradicts the data. Throws UnavailableError when the
+  /// file cannot be opened, UsageError when it decompresses to more than is allowed, FormatError when it is not MCAP,
+  /// and, where it has no summary that its data agree with, at the first damaged chunk (see ReaderOptions::on_damage).
   explicit Reader(const std::filesystem::path& path, ReaderOptions options = {});
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
@@ -54,6 +55,8 @@ class Reader {
   [[nodiscard]] std::optional<bool> dataCrcMatches() const;
 
  private:
+  [[nodiscard]] std::optional<bool> dataCrcMatches(std::uint64_t begin, std::uint64_t end) const;
+
   ReaderOptions options_;
   InputFile file_;
   FileIndex index_;

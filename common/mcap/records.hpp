@@ -106,6 +106,7 @@ struct MessageIndex {
   struct Entry {
     std::uint64_t log_time_ns;
     std::uint64_t offset;  // of the Message record in the decompressed chunk
+    bool operator==(const Entry&) const = default;
   };
   ChannelId channel_id{};
   std::vector<Entry> entries{};

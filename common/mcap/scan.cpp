@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "mcap/contents.hpp"
 #include "mcap/extent.hpp"
 #include "mcap/index.hpp"
+#include "mcap/shape.hpp"
 
 namespace baton::mcap {
 namespace {
@@ -14,72 +16,35 @@ constexpr std::uint64_t kRunBytes = 4 << 20;
 /// The fields in front of an attachment's data are looked for in its first bytes only: its data can be of any size.
 constexpr std::uint64_t kAttachmentHeadBytes = 1 << 20;
 
-/// What a DataEnd holds; another length is another record with a damaged opcode.
-constexpr std::uint64_t kDataEndBytes = 4;
 /// Where to go on behind damage is looked for in pieces that grow from this up to kRunBytes: it may be near, often.
 constexpr std::uint64_t kSearchBytes = 4 << 10;
 
-/// A number in the file; 0 behind its end.
-template <std::unsigned_integral Number>
-std::uint64_t numberAt(const InputFile& file, std::uint64_t offset) {
-  Number value = 0;
-  if (offset <= file.size() && sizeof value <= file.size() - offset) {
-    file.read(offset, std::as_writable_bytes(std::span(&value, 1)));
-  }
-  return value;
-}
-
-/// Whether the lengths in the record there fit one another, for the kinds that have several. That is more than chance
-/// gives, so it also tells such a record from other bytes.
-bool fits(const InputFile& file, const RecordPlace& place) {
-  const std::uint64_t body = place.offset + kRecordHeadBytes;
-  switch (place.opcode) {
-    case Opcode::kChunk: {
-      constexpr std::uint64_t kNameAt = 8 + 8 + 8 + 4, kLongestName = 4;
-      const std::uint64_t name = numberAt<std::uint32_t>(file, body + kNameAt);
-      if (name > kLongestName || place.body_length < kNameAt + 4 + name + 8) return false;
-      return numberAt<std::uint64_t>(file, body + kNameAt + 4 + name) == place.body_length - (kNameAt + 4 + name + 8);
-    }
-    case Opcode::kMessageIndex: {
-      constexpr std::uint64_t kEntryBytes = 8 + 8;
-      const std::uint64_t entries = numberAt<std::uint32_t>(file, body + 2);
-      return entries % kEntryBytes == 0 && place.body_length == 2 + 4 + entries;
-    }
-    case Opcode::kAttachment: {
-      constexpr std::uint64_t kNameAt = 8 + 8, kFixedBytes = kNameAt + 4 + 4 + 8 + 4;
-      const std::uint64_t name = numberAt<std::uint32_t>(file, body + kNameAt);
-      const std::uint64_t media = numberAt<std::uint32_t>(file, body + kNameAt + 4 + name);
-      const std::uint64_t known = kFixedBytes + name + media;
-      if (place.body_length < known) return false;
-      return numberAt<std::uint64_t>(file, body + kNameAt + 4 + name + 4 + media) == place.body_length - known;
-    }
-    default: return true;
-  }
-}
-
 class Scan {
  public:
-  Scan(const InputFile& file, const ReaderOptions& options) : file_(file), options_(options), loader_(file, options) {}
+  Scan(const InputFile& file, const ReaderOptions& options, const FileIndex* summary)
+      : file_(file), options_(options), loader_(file, options), declarations_(index_, summary) {}
 
   FileIndex run() {
     index_.info.file_bytes = file_.size();
     RecordWalk walk(file_, kMagic.size(), file_.size());
-    bool is_first = true;
-    bool is_data = true;
     while (true) {
       const std::optional<RecordPlace> place = walk.next();
-      if (is_data && goOnBehindDamage(walk, place)) continue;
+      if (!place && goOnWithNextRecording(walk, walk.position())) continue;
+      if (is_data_ && goOnBehindDamage(walk, place)) continue;
       if (!place) break;
-      if (std::exchange(is_first, false) && takeHeader(*place)) continue;
+      if (std::exchange(is_first_, false) && takeHeader(*place)) continue;
       if (place->opcode == Opcode::kFooter) {
         closeRun();
         closeFile(*place);
+        if (goOnWithNextRecording(walk, index_.info.complete_bytes)) continue;
         return finish();
       }
-      if (is_data) {
+      if (is_data_) {
         take(*place);
-        is_data = place->opcode != Opcode::kDataEnd || place->body_length != kDataEndBytes;
-        index_.info.has_all_data = !is_data;
+        is_data_ = !isDataEnd(*place);
+        index_.info.has_all_data = !is_data_;
+      } else {
+        refuseMisplaced(*place);
       }
     }
     closeRun();
@@ -91,6 +56,66 @@ class Scan {
   }
 
  private:
+  /// Recordings that were joined end to end: the next one begins there. Its ids are its own.
+  bool goOnWithNextRecording(RecordWalk& walk, std::uint64_t at) {
+    if (at < kMagic.size() + kRecordHeadBytes || !beginsRecording(file_, at)) return false;
+    closeRun();
+    if (!std::exchange(is_closed_, false) && cut_.empty()) {
+      cut_ = "the recording that another one follows at byte " + std::to_string(at) + " is cut: it has no end";
+    }
+    index_.info.beginnings.push_back(at);
+    index_.info.trailing_bytes = 0;
+    index_.info.has_all_data = false;
+    contradict("another recording begins at byte " + std::to_string(at) +
+               ", as when files are joined with `cat`: `bag merge` makes one recording of several");
+    declarations_.forget();
+    is_first_ = is_data_ = true;
+    previous_ = {};
+    hidden_.reset();
+    walk.moveTo(at + kMagic.size());
+    return true;
+  }
+
+  /// What a DataEnd is followed by distinguishes one with added fields from another record with a damaged opcode.
+  [[nodiscard]] bool isDataEnd(const RecordPlace& place) const {
+    constexpr std::uint64_t kDataEndBytes = 4;
+    if (place.opcode != Opcode::kDataEnd || place.body_length <= kDataEndBytes) {
+      return place.opcode == Opcode::kDataEnd && place.body_length == kDataEndBytes;
+    }
+    switch (Opcode{static_cast<std::uint8_t>(numberAt<std::uint8_t>(file_, place.end()))}) {
+      case Opcode::kFooter:
+      case Opcode::kSchema:
+      case Opcode::kChannel:
+      case Opcode::kStatistics:
+      case Opcode::kChunkIndex:
+      case Opcode::kAttachmentIndex:
+      case Opcode::kMetadataIndex:
+      case Opcode::kSummaryOffset: return true;
+      default: return false;
+    }
+  }
+
+  /// Data after the end of the data are in no index, and nothing says whether they belong there.
+  void refuseMisplaced(const RecordPlace& place) {
+    if (place.opcode != Opcode::kMessage && place.opcode != Opcode::kChunk && place.opcode != Opcode::kAttachment)
+      return;
+    const Extent extent{.offset = place.offset, .length = place.length(), .is_chunk = place.opcode == Opcode::kChunk};
+    (void)loader_.guarded(extent, [&]() -> void {
+      throw FormatError("it is a " + opcodeName(place.opcode) + " after the end of the data");
+    });
+  }
+
+  /// Kept to a few: a file can have any number.
+  void contradict(std::string text) {
+    constexpr std::size_t kMost = 20;
+    std::vector<std::string>& found = index_.info.contradictions;
+    if (found.size() < kMost) {
+      found.push_back(std::move(text));
+    } else if (found.size() == kMost) {
+      found.emplace_back("and more of the kind");
+    }
+  }
+
   /// False when the file goes on as if it had none, and the caller wants what is left of it.
   bool takeHeader(const RecordPlace& place) {
     if (place.opcode == Opcode::kHeader) {
@@ -99,7 +124,7 @@ class Scan {
     }
     const std::string what = "it begins with " + opcodeName(place.opcode) + " where a Header is required";
     if (!options_.on_damage) throw FormatError(file_.path().string() + " is not an MCAP recording: " + what);
-    options_.on_damage({place.offset, 0, what});
+    options_.on_damage({.offset = place.offset, .reason = what});
     return false;
   }
 
@@ -114,20 +139,28 @@ class Scan {
   /// caller who wants what is left gets what follows from the next chunk or attachment on. False when all is well or
   /// nothing follows.
   bool goOnBehindDamage(RecordWalk& walk, const std::optional<RecordPlace>& place) {
-    const bool is_torn = place ? !fits(file_, *place) : !walk.problem().empty();
+    const bool is_torn = place ? isTorn(*place) : !walk.problem().empty();
     if (!options_.on_damage || !is_torn) return false;
     const std::uint64_t from = place ? place->offset : walk.position();
     const std::optional<std::uint64_t> next = searchFrom(from + 1);
     if (!next) return false;
     closeRun();
     options_.on_damage(
-        {from, *next - from, place ? "the lengths of the " + opcodeName(place->opcode) + " disagree" : walk.problem()});
+        {.offset = from,
+         .length = *next - from,
+         .reason = place ? "the lengths of the " + opcodeName(place->opcode) + " there disagree" : walk.problem()});
     walk.moveTo(*next);
     return true;
   }
 
+  [[nodiscard]] bool isTorn(const RecordPlace& place) const {
+    if (place.opcode != Opcode::kFooter) return !fits(file_, place);
+    return place.end() + kMagic.size() <= file_.size() && !hasMagic(file_, place.end());
+  }
+
   /// Where the next chunk or attachment begins. A recording that is attached to this one has chunks that are not of
-  /// this one: attachments are found whole, and of one whose own beginning is damaged the magic tells.
+  /// this one: attachments are found whole, and of one whose own beginning is damaged the magic tells. Two magics are
+  /// the end of this recording and the beginning of another that was joined to it.
   [[nodiscard]] std::optional<std::uint64_t> searchFrom(std::uint64_t from) {
     bool is_inside = false;  // of a recording in an attachment
     std::uint64_t size = kSearchBytes;
@@ -138,6 +171,7 @@ class Scan {
       file_.read(from, window);
       for (std::size_t i = 0; i < std::min<std::uint64_t>(size, window.size()); ++i) {
         if (std::ranges::equal(ByteView(window).subspan(i).first(std::min(kMagic.size(), window.size() - i)), kMagic)) {
+          if (beginsRecording(file_, from + i + kMagic.size())) return from + i + kMagic.size();
           is_inside = !is_inside;
         }
         const auto opcode = Opcode{std::to_integer<std::uint8_t>(window[i])};
@@ -152,6 +186,7 @@ class Scan {
 
   void take(const RecordPlace& place) {
     noteHiddenChunk(place);
+    if (place.opcode != Opcode::kMessageIndex) closeMessageIndexes();
     const bool belongs_to_run =
         place.opcode == Opcode::kSchema || place.opcode == Opcode::kChannel || place.opcode == Opcode::kMessage;
     if (!belongs_to_run || run_.length + place.length() > kRunBytes) closeRun();
@@ -161,6 +196,8 @@ class Scan {
     } else if (place.opcode == Opcode::kChunk) {
       ++index_.statistics.chunk_count;
       takeExtent({.offset = place.offset, .length = place.length()});
+    } else if (place.opcode == Opcode::kMessageIndex) {
+      checkMessageIndex(place);
     } else if (place.opcode == Opcode::kAttachment) {
       takeAttachment(place);
     } else if (place.opcode == Opcode::kMetadata) {
@@ -178,7 +215,9 @@ class Scan {
       const bool is_known = place.opcode <= Opcode::kDataEnd;
       hidden_ = is_known || previous_ == Opcode::kChunk ? std::nullopt : std::optional(place);
     } else if (hidden_ && options_.on_damage) {
-      options_.on_damage({hidden_->offset, hidden_->length(), "it is indexed as a chunk, and is of no known kind"});
+      options_.on_damage({.offset = hidden_->offset,
+                          .length = hidden_->length(),
+                          .reason = "it is indexed as a chunk, and is of no known kind"});
       hidden_.reset();
     }
     previous_ = place.opcode;
@@ -206,78 +245,105 @@ class Scan {
   }
 
   /// Learns the schemas and channels of an extent and counts its messages: all of them or, when it is damaged, none.
-  void takeExtent(Extent extent) {
+  void takeExtent(const Extent& extent) {
     if (options_.on_progress) options_.on_progress(extent.offset, file_.size());
-    std::map<ChannelId, std::uint64_t> counts;
+    Contents found{.extent = extent};
     const bool is_sound = loader_.guarded(extent, [&] {
-      ByteReader in(loader_.load(extent, storage_));
-      while (const std::optional<RecordView> record = nextRecord(in)) {
-        if (record->opcode == Opcode::kSchema) {
-          takeSchema(decodeSchema(record->body));
-        } else if (record->opcode == Opcode::kChannel) {
-          takeChannel(decodeChannel(record->body));
-        } else if (record->opcode == Opcode::kMessage) {
-          const Message message = decodeMessage(record->body);
-          if (!index_.channels.contains(message.channel_id)) {
-            throw FormatError("a message belongs to channel " +
-                              std::to_string(static_cast<unsigned>(message.channel_id)) + ", which is not known");
-          }
-          const bool is_first = counts.empty();
-          extent.start_time_ns = is_first ? message.log_time_ns : std::min(extent.start_time_ns, message.log_time_ns);
-          extent.end_time_ns = is_first ? message.log_time_ns : std::max(extent.end_time_ns, message.log_time_ns);
-          ++counts[message.channel_id];
-        }
-      }
+      readContents(loader_.load(extent, storage_), declarations_, found);
+      if (!found.undeclared.empty() && !options_.on_damage) throw FormatError(undeclaredIn(found).reason);
     });
-    if (!is_sound || counts.empty()) return;
+    for (std::string& text : found.contradictions) contradict(std::move(text));
+    if (!is_sound) return;
+    if (!found.undeclared.empty()) options_.on_damage(undeclaredIn(found));
+    if (extent.is_chunk) checkTimes(found.extent, found.counts.empty());
+    if (extent.is_chunk) indexed_ = {.chunk = extent, .entries = std::move(found.entries)};
+    if (found.counts.empty()) return;
     Statistics& statistics = index_.statistics;
     const bool is_first = index_.extents.empty();
     statistics.start_time_ns =
-        is_first ? extent.start_time_ns : std::min(statistics.start_time_ns, extent.start_time_ns);
-    statistics.end_time_ns = std::max(statistics.end_time_ns, extent.end_time_ns);
-    for (const auto& [id, count] : counts) {
+        is_first ? found.extent.start_time_ns : std::min(statistics.start_time_ns, found.extent.start_time_ns);
+    statistics.end_time_ns = std::max(statistics.end_time_ns, found.extent.end_time_ns);
+    for (const auto& [id, count] : found.counts) {
       statistics.channel_message_counts[id] += count;
       statistics.message_count += count;
-      extent.channels.push_back(id);
     }
-    index_.extents.push_back(std::move(extent));
+    index_.extents.push_back(std::move(found.extent));
   }
 
-  void takeSchema(Schema schema) {
-    if (schema.id == kNoSchema) return;  // invalid, and to be ignored
-    const auto [known, is_new] = index_.schemas.try_emplace(schema.id, schema);
-    if (!is_new && known->second != schema) {
-      throw FormatError("schema " + std::to_string(static_cast<unsigned>(schema.id)) + " is given twice and differs");
+  static Damage undeclaredIn(const Contents& found) {
+    constexpr std::size_t kMostNamed = 8;
+    Damage lost{.offset = found.extent.offset};
+    std::string channels;
+    std::size_t named = 0;
+    for (const auto& [id, count] : found.undeclared) {
+      lost.messages += count;
+      if (++named <= kMostNamed) channels += (channels.empty() ? "" : ", ") + std::to_string(static_cast<unsigned>(id));
     }
+    if (named > kMostNamed) channels += " and more";
+    lost.reason = "messages in the " + placeOf(found.extent) +
+                  " belong to channels that are not declared before them: " + channels;
+    return lost;
   }
 
-  void takeChannel(Channel channel) {
-    const auto [known, is_new] = index_.channels.try_emplace(channel.id, channel);
-    if (!is_new && known->second != channel) {
-      throw FormatError("channel " + std::to_string(static_cast<unsigned>(channel.id)) + " is given twice and differs");
+  /// What a chunk's head says of its messages.
+  void checkTimes(const Extent& chunk, bool is_empty) {
+    const std::uint64_t body = chunk.offset + kRecordHeadBytes;
+    const auto start = numberAt<std::uint64_t>(file_, body), end = numberAt<std::uint64_t>(file_, body + 8);
+    if (is_empty || (start == chunk.start_time_ns && end == chunk.end_time_ns)) return;
+    contradict("the " + placeOf(chunk) + " gives its messages the times " + std::to_string(start) + " to " +
+               std::to_string(end) + " ns, they have " + std::to_string(chunk.start_time_ns) + " to " +
+               std::to_string(chunk.end_time_ns));
+  }
+
+  /// Holds a message index against the messages of the chunk before it.
+  void checkMessageIndex(const RecordPlace& place) {
+    if (!indexed_) return;
+    indexed_->has_index = true;
+    guarded(place, [&](ByteView body) {
+      MessageIndex index = decodeMessageIndex(body);
+      std::ranges::sort(index.entries, {}, &MessageIndex::Entry::offset);
+      const auto expected = indexed_->entries.extract(index.channel_id);
+      if (expected.empty() ? index.entries.empty() : expected.mapped() == index.entries) return;
+      contradict("the message index at byte " + std::to_string(place.offset) +
+                 " is not that of the messages of channel " + std::to_string(static_cast<unsigned>(index.channel_id)) +
+                 " in the " + placeOf(indexed_->chunk));
+    });
+  }
+
+  /// A chunk has no message index at all, or one for each of its channels.
+  void closeMessageIndexes() {
+    if (indexed_ && indexed_->has_index && !indexed_->entries.empty()) {
+      contradict("the message indexes after the " + placeOf(indexed_->chunk) + " leave out channel " +
+                 std::to_string(static_cast<unsigned>(indexed_->entries.begin()->first)));
     }
+    indexed_.reset();
   }
 
   /// A finished recording ends with the magic behind its footer.
   void closeFile(const RecordPlace& footer) {
     FileInfo& info = index_.info;
-    const std::uint64_t left = file_.size() - footer.end();
-    std::array<std::byte, kMagic.size()> magic{};
-    if (left >= magic.size()) file_.read(footer.end(), magic);
-    if (magic != kMagic) {
-      info.complete_bytes = footer.end();
+    info.complete_bytes = footer.end();
+    is_closed_ = hasMagic(file_, footer.end()) && !beginsRecording(file_, footer.end());
+    if (!is_closed_) {
       info.problem = "cut at byte " + std::to_string(footer.end()) + ": the closing magic does not follow the footer";
       return;
     }
-    info.complete_bytes = footer.end() + magic.size();
-    info.is_complete = info.complete_bytes == file_.size();
+    info.complete_bytes += kMagic.size();
+    info.trailing_bytes = file_.size() - info.complete_bytes;
+    info.is_complete = info.trailing_bytes == 0;
+    info.problem.clear();
     if (!info.is_complete) {
-      info.problem = std::to_string(left - magic.size()) + " bytes follow the end of the recording at byte " +
-                     std::to_string(info.complete_bytes);
+      info.problem = std::to_string(info.trailing_bytes) + " bytes follow the end of the recording at byte " +
+                     std::to_string(info.complete_bytes) + " and belong to none";
     }
   }
 
   FileIndex finish() {
+    if (!cut_.empty()) {
+      FileInfo& info = index_.info;
+      info.is_complete = info.has_all_data = false;
+      info.problem = cut_ + (info.problem.empty() ? "" : "; " + info.problem);
+    }
     Statistics& statistics = index_.statistics;
     statistics.schema_count = static_cast<std::uint16_t>(index_.schemas.size());
     statistics.channel_count = static_cast<std::uint32_t>(index_.channels.size());
@@ -286,18 +352,32 @@ class Scan {
     return std::move(index_);
   }
 
+  struct IndexedChunk {
+    Extent chunk;
+    std::map<ChannelId, std::vector<MessageIndex::Entry>> entries{};  // that no message index has listed yet
+    bool has_index = false;
+  };
+
   const InputFile& file_;
   const ReaderOptions& options_;
   ExtentLoader loader_;
   Buffer storage_;
   FileIndex index_;
-  Opcode previous_{};                  // of the record before
-  std::optional<RecordPlace> hidden_;  // a record that may have been a chunk
-  Extent run_{.is_chunk = false};      // consecutive records outside of chunks; empty when length is 0
+  Declarations declarations_;
+  bool is_first_ = true;                 // no record of the recording has been read yet
+  bool is_data_ = true;                  // and not the end of its data
+  bool is_closed_ = false;               // its footer and its magic have been read
+  std::string cut_;                      // the first recording that has no end, and that another one follows
+  std::optional<IndexedChunk> indexed_;  // the chunk that message indexes may follow
+  Opcode previous_{};                    // of the record before
+  std::optional<RecordPlace> hidden_;    // a record that may have been a chunk
+  Extent run_{.is_chunk = false};        // consecutive records outside of chunks; empty when length is 0
 };
 
 }  // namespace
 
-FileIndex scanFile(const InputFile& file, const ReaderOptions& options) { return Scan(file, options).run(); }
+FileIndex scanFile(const InputFile& file, const ReaderOptions& options, const FileIndex* summary) {
+  return Scan(file, options, summary).run();
+}
 
 }  // namespace baton::mcap

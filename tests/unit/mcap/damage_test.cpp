@@ -313,35 +313,6 @@ TEST_P(PlainDamageTest, ASummaryCannotListAChunkManyTimes) {
   EXPECT_EQ(samplesOf(reader).size(), 1U);
 }
 
-TEST_P(PlainDamageTest, AnIndexWithOtherTimesThanItsMessagesDoesNotBreakTheirOrder) {
-  FileBuilder file;
-  Bytes records;
-  appendChannel(records, {.id = ChannelId{1}, .topic = "t", .message_encoding = ""});
-  const Bytes channel = records;
-  std::vector<ChunkIndex> chunks;
-  for (const std::uint64_t time : {5U, 3U}) {
-    appendMessage(records, {.channel_id = ChannelId{1}, .log_time_ns = time});
-    chunks.push_back({.start_time_ns = 5, .end_time_ns = 5, .chunk_offset = file.bytes.size()});
-    file.chunk(records, 5, 5);
-    chunks.back().chunk_length = file.bytes.size() - chunks.back().chunk_offset;
-    records.clear();
-  }
-  appendDataEnd(file.bytes, {});
-  const std::size_t summary_start = file.bytes.size();
-  append(file.bytes, channel);
-  appendStatistics(
-      file.bytes,
-      {.message_count = 2, .channel_count = 1, .chunk_count = 2, .channel_message_counts = {{ChannelId{1}, 2}}});
-  for (const ChunkIndex& chunk : chunks) appendChunkIndex(file.bytes, chunk);
-  appendFooter(file.bytes, {.summary_start = summary_start});
-  append(file.bytes, kMagic);
-  saveFile(path, file.bytes);
-  const Reader reader(path);
-  EXPECT_TRUE(reader.info().has_summary) << reader.info().problem;
-  EXPECT_THROW(samplesOf(reader), FormatError);
-  EXPECT_EQ(samplesOf(reader, {.order = MessageFilter::Order::kFile}).size(), 2U);
-}
-
 TEST_P(PlainDamageTest, ADamagedAttachmentIsReported) {
   Bytes file = smallRecording();
   const std::vector<RawRecord> records = rawRecords(file);

@@ -1,0 +1,28 @@
+/// Whether bytes of a file have the shape of a record: where reading can continue after damage.
+#pragma once
+
+#include "mcap/index.hpp"
+
+namespace baton::mcap {
+
+/// A number in the file; 0 after its end.
+template <std::unsigned_integral Number>
+[[nodiscard]] std::uint64_t numberAt(const InputFile& file, std::uint64_t offset) {
+  Number value = 0;
+  if (offset <= file.size() && sizeof value <= file.size() - offset) {
+    file.read(offset, std::as_writable_bytes(std::span(&value, 1)));
+  }
+  return value;
+}
+
+/// Whether the lengths in the record there fit one another. That is more than chance gives, so it also distinguishes
+/// such a record from other bytes. A later version of the format may have added fields to a record: then another one
+/// follows its end. Where one follows its known fields, it is the record's own length that is damaged.
+[[nodiscard]] bool fits(const InputFile& file, const RecordPlace& place);
+
+[[nodiscard]] bool hasMagic(const InputFile& file, std::uint64_t offset);
+
+/// The magic and a Header: recordings that were joined end to end in one file.
+[[nodiscard]] bool beginsRecording(const InputFile& file, std::uint64_t offset);
+
+}  // namespace baton::mcap

@@ -1,0 +1,346 @@
+/// Files that contradict themselves: an index of other data than there are, an id with two meanings, recordings that
+/// were joined end to end. The data count, and the contradiction is named.
+#include <algorithm>
+
+#include "indexed_file.hpp"
+#include "mcap/copy.hpp"
+
+namespace baton::mcap {
+namespace {
+
+const Schema kSchema{.id = SchemaId{1}, .name = "T", .encoding = "omgidl", .data = {}};
+
+Channel channelOf(std::uint16_t id, const std::string& topic, std::uint16_t schema = 1) {
+  return {.id = ChannelId{id}, .schema_id = SchemaId{schema}, .topic = topic, .message_encoding = "cdr"};
+}
+
+/// Two chunks with five messages each of two topics, an attachment and a metadata record.
+void fill(IndexedFile& file) {
+  for (std::uint64_t chunk = 0; chunk < 2; ++chunk) {
+    file.schema(kSchema);
+    file.channel(channelOf(1, "a"));
+    file.channel(channelOf(2, "b"));
+    for (std::uint64_t i = 0; i < 5; ++i) file.message(i == 2 ? 2 : 1, 1000 + 100 * chunk + i);
+    file.closeChunk();
+  }
+  file.attachment("notes.txt", "hello");
+  file.addMetadata("run");
+}
+
+bool mentions(const FileInfo& info, const std::string& words) {
+  const auto has = [&](const std::string& text) { return text.find(words) != std::string::npos; };
+  return has(info.problem) || std::ranges::any_of(info.contradictions, has);
+}
+
+std::string textOf(const FileInfo& info) {
+  std::string text = info.problem;
+  for (const std::string& one : info.contradictions) text += "\n" + one;
+  return text;
+}
+
+class ContradictionTest : public testing::Test {
+ protected:
+  [[nodiscard]] std::vector<std::string> topicsOf(const Reader& reader) const {
+    std::vector<std::string> topics;
+    for (const Sample& sample : samplesOf(reader, {.order = MessageFilter::Order::kFile}))
+      topics.push_back(sample.topic);
+    return topics;
+  }
+  Recovery recovered() const {
+    RecoverOptions options;
+    options.writer.sync_on_close = false;
+    options.writer.if_exists = OutputFile::IfExists::kReplace;
+    options.lossy_name = [](const std::string& name) { return "original " + name; };
+    return recover(path, out, options);
+  }
+
+  TemporaryFolder folder;
+  std::filesystem::path path = folder.file("run.mcap");
+  std::filesystem::path out = folder.file("out.mcap");
+};
+
+TEST_F(ContradictionTest, AnIndexThatAgreesWithItsDataIsUsed) {
+  IndexedFile file;
+  fill(file);
+  saveFile(path, file.finished());
+  const Reader reader(path);
+  EXPECT_TRUE(reader.info().has_summary) << textOf(reader.info());
+  EXPECT_EQ(textOf(reader.info()), "");
+  EXPECT_EQ(samplesOf(reader).size(), 10U);
+  EXPECT_TRUE(recovered().is_whole);
+}
+
+TEST_F(ContradictionTest, AnIndexThatContradictsItsDataIsNotBelieved) {
+  struct Case {
+    const char* words;
+    std::function<void(IndexedFile&)> summary;
+    std::function<void(Chunk&)> head = [](Chunk&) {};
+    std::function<bool(MessageIndex&)> messages = [](MessageIndex&) { return true; };
+  };
+  const auto nothing = [](IndexedFile&) {};
+  const auto isOfB = [](const MessageIndex& index) { return index.channel_id == ChannelId{2}; };
+  const std::vector<Case> cases{
+      {"the times 0 to 0 ns", [](IndexedFile& f) { f.chunks[0].start_time_ns = f.chunks[0].end_time_ns = 0; }},
+      {"the times 5000 to 6000",
+       [](IndexedFile& f) { f.chunks[1].start_time_ns = 5000, f.chunks[1].end_time_ns = 6000; }},
+      {"the times 1001 to 1004", [](IndexedFile& f) { f.chunks[0].start_time_ns = 1001; }},
+      {"has messages of channel 2", [](IndexedFile& f) { f.chunks[1].message_index_offsets.pop_back(); }},
+      {"messages from 0 to 1104 ns", [](IndexedFile& f) { f.statistics.start_time_ns = 0; }},
+      {"messages from 1000 to 9999 ns", [](IndexedFile& f) { f.statistics.end_time_ns = 9999; }},
+      {"it counts 11 messages",
+       [](IndexedFile& f) { ++f.statistics.message_count, ++f.statistics.channel_message_counts[ChannelId{2}]; }},
+      {"it counts 9 messages of channel 1",
+       [](IndexedFile& f) {
+         ++f.statistics.channel_message_counts[ChannelId{1}], --f.statistics.channel_message_counts[ChannelId{2}];
+       }},
+      {"channel 1 is another in the data", [](IndexedFile& f) { f.channels[0].topic = "other"; }},
+      {"schema 1 is another in the data", [](IndexedFile& f) { f.schemas[0].data = payload(3, 1); }},
+      {"describes another attachment", [](IndexedFile& f) { f.attachments[0].name = "other"; }},
+      {"describes another attachment", [](IndexedFile& f) { f.attachments[0].data_size = std::uint64_t{1} << 60; }},
+      {"describes another metadata record", [](IndexedFile& f) { f.metadata[0].name = "other"; }},
+      {"lists a record Attachment of 77 bytes", [](IndexedFile& f) { f.attachments[0].length = 77; }},
+      {"where none begins", [](IndexedFile& f) { f.attachments[0].offset += 3; }},
+      {"where none begins", [](IndexedFile& f) { f.metadata[0].offset = std::uint64_t{1} << 60; }},
+      {"lists a record Chunk", [](IndexedFile& f) { f.chunks[0].chunk_length += 1; }},
+      {"gives its messages the times 0 to 0", nothing, [](Chunk& head) { head.start_time_ns = head.end_time_ns = 0; }},
+      {"is not that of the messages of channel 2", nothing, [](Chunk&) {},
+       [&](MessageIndex& index) { return isOfB(index) ? (index.entries[0].offset += 1, true) : true; }},
+      {"is not that of the messages of channel 2", nothing, [](Chunk&) {},
+       [&](MessageIndex& index) { return isOfB(index) ? (index.entries[0].log_time_ns = 0, true) : true; }},
+      {"leave out channel 2", nothing, [](Chunk&) {}, [&](MessageIndex& index) { return !isOfB(index); }},
+  };
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.words);
+    IndexedFile file;
+    file.change_head = one.head;
+    file.change_message_index = one.messages;
+    file.change_summary = one.summary;
+    fill(file);
+    saveFile(path, file.finished());
+    const Reader reader(path);
+    EXPECT_FALSE(reader.info().has_summary);
+    EXPECT_TRUE(reader.info().is_complete);
+    EXPECT_TRUE(mentions(reader.info(), one.words)) << textOf(reader.info());
+    EXPECT_NE(reader.info().problem, "");
+    EXPECT_EQ(logTimesOf(reader),
+              (std::vector<std::uint64_t>{1000, 1001, 1002, 1003, 1004, 1100, 1101, 1102, 1103, 1104}));
+    EXPECT_EQ(logTimesOf(reader, {.start_time_ns = 1104}), std::vector<std::uint64_t>{1104});
+    EXPECT_EQ(logTimesOf(reader, {.topics = {"b"}}), (std::vector<std::uint64_t>{1002, 1102}));
+    EXPECT_EQ(reader.statistics().start_time_ns, 1000U);
+    EXPECT_EQ(reader.statistics().end_time_ns, 1104U);
+    EXPECT_EQ(reader.attachments().at(0).name, "notes.txt");
+    EXPECT_EQ(reader.readAttachment(reader.attachments().at(0)).size(), 5U);
+    EXPECT_EQ(reader.metadata().at(0).name, "run");
+    const Recovery found = recovered();
+    EXPECT_TRUE(found.lost.empty());
+    EXPECT_FALSE(found.is_whole);
+    EXPECT_EQ(found.messages, 10U);
+    EXPECT_EQ(textOf(Reader(out).info()), "");
+  }
+}
+
+TEST_F(ContradictionTest, OfAnIdWithTwoMeaningsTheLaterCountsFromThereOn) {
+  for (const bool is_cut : {false, true}) {
+    IndexedFile file;
+    file.schema(kSchema);
+    file.channel(channelOf(1, "a"));
+    file.message(1, 1);
+    file.closeChunk();
+    file.message(1, 2);
+    file.channel(channelOf(1, "other"));  // within a chunk
+    file.message(1, 3);
+    file.closeChunk();
+    file.channel(channelOf(65535, "b"));
+    file.message(1, 4);
+    file.message(65535, 5);
+    file.channel(channelOf(1, "a"));  // and back
+    file.message(1, 6);
+    file.closeChunk();
+    saveFile(path, is_cut ? file.cut() : file.finished());
+    const Reader reader(path);
+    EXPECT_EQ(topicsOf(reader), (std::vector<std::string>{"a", "a", "other", "other", "b", "a"}));
+    EXPECT_EQ(logTimesOf(reader, {.topics = {"other"}}), (std::vector<std::uint64_t>{3, 4}));
+    EXPECT_TRUE(mentions(reader.info(), "channel 1 is declared again")) << textOf(reader.info());
+    EXPECT_TRUE(mentions(reader.info(), "a before, other from there on")) << textOf(reader.info());
+    EXPECT_EQ(reader.channels().size(), 3U);
+    const Recovery found = recovered();
+    EXPECT_EQ(found.lost.empty(), !is_cut);
+    EXPECT_TRUE(mentions(found.info, "channel 1 is declared again"));
+    const Reader copy(out);
+    EXPECT_EQ(topicsOf(copy), topicsOf(reader));
+    EXPECT_EQ(textOf(copy.info()), "");
+  }
+}
+
+TEST_F(ContradictionTest, ASchemaWithTwoMeaningsIsThatOfItsChannelsFromThereOn) {
+  Schema other = kSchema;
+  other.name = "Other";
+  IndexedFile file;
+  file.schema(kSchema);
+  file.channel(channelOf(1, "a"));
+  file.message(1, 1);
+  file.closeChunk();
+  file.schema(other);
+  file.message(1, 2);
+  file.closeChunk();
+  saveFile(path, file.cut());
+  const Reader reader(path);
+  std::vector<std::string> names;
+  reader.forEachMessage({}, [&](const MessageView& message) { names.push_back(message.schema->name); });
+  EXPECT_EQ(names, (std::vector<std::string>{"T", "Other"}));
+  EXPECT_TRUE(mentions(reader.info(), "schema 1 is declared again")) << textOf(reader.info());
+}
+
+TEST_F(ContradictionTest, MoreMeaningsThanIdsAreRefused) {
+  IndexedFile file;
+  for (unsigned i = 0; i < 70'000; ++i) file.channel(channelOf(1, std::to_string(i), 0));
+  file.message(1, 1);
+  file.closeChunk();
+  saveFile(path, file.cut());
+  EXPECT_THROW(Reader{path}, FormatError);
+  EXPECT_LT(recovered().info.contradictions.size(), 30U) << "a few are enough to know";
+}
+
+TEST_F(ContradictionTest, RecordingsThatWereJoinedAreAllRead) {
+  IndexedFile first, second;
+  fill(first);
+  second.channel(channelOf(1, "another topic", 0));
+  second.channel(channelOf(2, "b", 0));
+  second.message(1, 5);
+  second.message(2, 6);
+  second.closeChunk();
+  const Bytes one = first.finished(), two = second.finished();
+  Bytes file = one;
+  append(file, two);
+  append(file, one);
+  saveFile(path, file);
+  const Reader reader(path);
+  EXPECT_TRUE(reader.info().is_complete) << textOf(reader.info());
+  EXPECT_TRUE(mentions(reader.info(), "another recording begins at byte " + std::to_string(one.size())));
+  EXPECT_TRUE(mentions(reader.info(), "another recording begins at byte " + std::to_string(one.size() + two.size())));
+  EXPECT_EQ(samplesOf(reader).size(), 22U);
+  EXPECT_EQ(samplesOf(reader, {.topics = {"another topic"}}).size(), 1U);
+  EXPECT_EQ(reader.attachments().size(), 2U);
+  const Recovery found = recovered();
+  EXPECT_EQ(found.messages, 22U);
+  EXPECT_TRUE(found.lost.empty());
+  EXPECT_FALSE(found.is_whole);
+  EXPECT_EQ(Reader(out).metadata().at(0).name, "original run") << "what was said of one of them";
+}
+
+TEST_F(ContradictionTest, ChecksTheDataOfEachRecordingThatWasJoined) {
+  const auto write = [&] {
+    std::filesystem::remove(path);
+    Writer writer(path);
+    writer.write(writer.addChannel("a", "cdr", kNoSchema), 0, 1, 1, payload(100, 1));
+    writer.close();
+    return loadFile(path);
+  };
+  const Bytes one = write();
+  Bytes file = one;
+  append(file, one);
+  saveFile(path, file);
+  EXPECT_EQ(Reader(path).dataCrcMatches(), true);
+  file[one.size() + 26] ^= std::byte{1};  // in the name of the library that wrote it
+  saveFile(path, file);
+  EXPECT_EQ(Reader(path).dataCrcMatches(), false);
+}
+
+TEST_F(ContradictionTest, ARecordingWithoutAnEndBeforeAnotherOneIsACut) {
+  IndexedFile first, second;
+  fill(first);
+  fill(second);
+  Bytes file = first.cut();
+  append(file, second.finished());
+  saveFile(path, file);
+  const Reader reader(path);
+  EXPECT_FALSE(reader.info().is_complete);
+  EXPECT_TRUE(mentions(reader.info(), "is cut: it has no end")) << textOf(reader.info());
+  EXPECT_EQ(samplesOf(reader).size(), 20U);
+  EXPECT_FALSE(recovered().lost.empty());
+}
+
+TEST_F(ContradictionTest, DamageAtTheEndOfARecordingDoesNotMixItWithTheNext) {
+  IndexedFile first, second;
+  fill(first);
+  second.channel(channelOf(1, "another topic", 0));
+  second.message(1, 5);
+  second.closeChunk();
+  Bytes file = first.finished();
+  file[first.chunks[1].chunk_offset + 4] = std::byte{0x7F};  // far beyond the end of the file
+  append(file, second.finished());
+  saveFile(path, file);
+  const Recovery found = recovered();
+  EXPECT_FALSE(found.lost.empty());
+  EXPECT_EQ(samplesOf(Reader(out), {.topics = {"another topic"}}).size(), 1U);
+  EXPECT_EQ(found.messages, 6U);
+  EXPECT_TRUE(mentions(found.info, "another recording begins")) << textOf(found.info);
+}
+
+TEST_F(ContradictionTest, BytesAfterTheEndAreALossThatIsNamed) {
+  IndexedFile file;
+  fill(file);
+  Bytes bytes = file.finished();
+  const std::size_t end = bytes.size();
+  append(bytes, asBytes("anything"));
+  saveFile(path, bytes);
+  const Recovery found = recovered();
+  EXPECT_EQ(found.messages, 10U);
+  ASSERT_EQ(found.lost.size(), 1U);
+  EXPECT_EQ(found.lost[0].offset, end);
+  EXPECT_EQ(found.lost[0].length, 8U);
+}
+
+TEST_F(ContradictionTest, DataAfterTheEndOfTheDataAreNotSilentlyLost) {
+  IndexedFile file;
+  fill(file);
+  Bytes bytes = file.cut();
+  appendDataEnd(bytes, {});
+  FileBuilder chunk;
+  Bytes records;
+  appendMessage(records, {.channel_id = ChannelId{1}, .log_time_ns = 7});
+  chunk.chunk(records, 7, 7);
+  append(bytes, ByteView(chunk.bytes).subspan(rawRecords(file.cut()).front().end()));
+  appendFooter(bytes, {});
+  append(bytes, kMagic);
+  saveFile(path, bytes);
+  EXPECT_THROW(Reader{path}, FormatError);
+  const Recovery found = recovered();
+  EXPECT_EQ(found.messages, 10U);
+  EXPECT_EQ(found.lost.size(), 1U);
+}
+
+/// The specification lets records grow at their end.
+class LongerRecordTest : public ContradictionTest, public testing::WithParamInterface<Bytes> {};
+INSTANTIATE_TEST_SUITE_P(Extras, LongerRecordTest,
+                         testing::Values(Bytes{std::byte{1}, std::byte{0xFF}, std::byte{0xFF}}, Bytes(16, std::byte{0}),
+                                         Bytes(300, std::byte{6})));
+
+TEST_P(LongerRecordTest, BytesAfterTheKnownFieldsAreIgnored) {
+  IndexedFile file(GetParam());
+  fill(file);
+  const Bytes bytes = file.finished();
+  saveFile(path, bytes);
+  EXPECT_TRUE(Reader(path).info().has_summary) << textOf(Reader(path).info());
+  EXPECT_TRUE(recovered().is_whole);
+  // Without its index, and without the end of it: by its data alone.
+  for (const std::size_t size : {file.cut().size(), bytes.size() - 10}) {
+    saveFile(path, ByteView(bytes).first(size));
+    for (const bool is_tolerant : {false, true}) {
+      std::vector<Damage> damage;
+      ReaderOptions options;
+      if (is_tolerant) options.on_damage = [&](const Damage& one) { damage.push_back(one); };
+      const Reader reader(path, options);
+      EXPECT_EQ(samplesOf(reader).size(), 10U);
+      EXPECT_TRUE(damage.empty()) << describe(damage.at(0));
+      EXPECT_TRUE(reader.info().contradictions.empty()) << textOf(reader.info());
+      ASSERT_EQ(reader.attachments().size(), 1U);
+      EXPECT_EQ(reader.readAttachment(reader.attachments()[0]).size(), 5U);
+      EXPECT_EQ(reader.metadata().size(), 1U);
+      EXPECT_EQ(reader.info().has_all_data, size > file.cut().size());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace baton::mcap

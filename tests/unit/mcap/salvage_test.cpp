@@ -1,0 +1,188 @@
+/// What a damaged chunk, or a message that belongs nowhere, costs: itself, and nothing after it.
+#include <algorithm>
+
+#include "indexed_file.hpp"
+#include "mcap/copy.hpp"
+
+namespace baton::mcap {
+namespace {
+
+Channel channelOf(std::uint16_t id, const std::string& topic) {
+  return {.id = ChannelId{id}, .schema_id = kNoSchema, .topic = topic, .message_encoding = "cdr"};
+}
+
+class SalvageTest : public testing::Test {
+ protected:
+  ReaderOptions tolerant() {
+    ReaderOptions options;
+    options.on_damage = [this](const Damage& one) { damage.push_back(one); };
+    return options;
+  }
+  TemporaryFolder folder;
+  std::filesystem::path path = folder.file("run.mcap");
+  std::vector<Damage> damage;
+};
+
+TEST_F(SalvageTest, NoChunkOfOursNeedsAnother) {
+  {
+    WriterOptions options;
+    options.chunk_bytes = 400;
+    Writer writer(path, options);
+    const SchemaId schema = writer.addSchema("T", "omgidl", asBytes("struct T {};"));
+    const ChannelId a = writer.addChannel("a", "cdr", schema), b = writer.addChannel("b", "cdr", schema);
+    for (unsigned i = 0; i < 60; ++i) writer.write(i % 2 == 0 ? a : b, i, i, i, payload(30, i));
+    writer.close();
+  }
+  const Bytes file = loadFile(path);
+  const std::vector<RawRecord> records = rawRecords(file);
+  const std::size_t data_end = std::ranges::find(records, 0x0F, &RawRecord::opcode)->offset;
+  const std::vector<Sample> all = samplesOf(Reader(path));
+  int chunks = 0;
+  for (const RawRecord& record : records) {
+    if (record.opcode != 0x06) continue;
+    ++chunks;
+    const Chunk chunk = decodeChunk(record.body);
+    Bytes damaged(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(data_end));
+    damaged[record.end() - 3] ^= std::byte{0xFF};
+    saveFile(path, damaged);
+    std::vector<Sample> expected = all;
+    std::erase_if(expected, [&](const Sample& one) {
+      return one.log_time_ns >= chunk.start_time_ns && one.log_time_ns <= chunk.end_time_ns;
+    });
+    const Reader reader(path, tolerant());
+    EXPECT_EQ(samplesOf(reader), expected);
+    EXPECT_EQ(reader.channels().size(), 2U);
+    EXPECT_EQ(reader.schemas().size(), 1U);
+  }
+  EXPECT_GT(chunks, 5);
+}
+
+TEST_F(SalvageTest, ASchemaLargerThanAChunkLeavesRoomForMessages) {
+  {
+    WriterOptions options;
+    options.chunk_bytes = 1000;
+    Writer writer(path, options);
+    const ChannelId a = writer.addChannel("a", "cdr", writer.addSchema("T", "omgidl", payload(5000, 1)));
+    for (unsigned i = 0; i < 100; ++i) writer.write(a, i, i, i, payload(69, i));
+    writer.close();
+  }
+  EXPECT_EQ(Reader(path).statistics().chunk_count, 11U) << "ten messages to a chunk, and one with the first schema";
+}
+
+TEST_F(SalvageTest, AMessageOfAnUndeclaredChannelCostsItselfAlone) {
+  IndexedFile file;
+  file.message(9, 1);  // declared nowhere
+  file.channel(channelOf(1, "a"));
+  file.message(1, 2);
+  file.message(2, 3);  // declared after it, in the same chunk
+  file.channel(channelOf(2, "b"));
+  file.message(9, 4);
+  file.closeChunk();
+  file.message(1, 5);
+  file.message(3, 6);  // declared in a later chunk only
+  file.closeChunk();
+  file.channel(channelOf(3, "c"));
+  file.message(3, 7);
+  file.closeChunk();
+  file.change_summary = [](IndexedFile& f) { f.statistics.channel_message_counts.erase(ChannelId{9}); };
+  for (const bool is_cut : {true, false}) {
+    damage.clear();
+    saveFile(path, is_cut ? file.cut() : file.finished());
+    EXPECT_EQ(logTimesOf(Reader(path, tolerant())), (std::vector<std::uint64_t>{2, 3, 5, 7}));
+    ASSERT_EQ(damage.size(), 2U);
+    EXPECT_EQ(damage[0].messages, 2U) << describe(damage[0]);
+    EXPECT_NE(describe(damage[0]).find("2 messages in the chunk at byte"), std::string::npos) << describe(damage[0]);
+    EXPECT_EQ(damage[1].messages, 1U);
+    EXPECT_EQ(damage[0].length + damage[1].length, 0U) << "their bytes could be read";
+    EXPECT_THROW(Reader{path}, FormatError);
+    RecoverOptions options;
+    options.writer.if_exists = OutputFile::IfExists::kReplace;
+    const Recovery found = recover(path, folder.file("out.mcap"), options);
+    EXPECT_EQ(found.messages, 4U);
+    EXPECT_EQ(found.lost.size(), is_cut ? 3U : 2U);
+  }
+}
+
+TEST_F(SalvageTest, ASummaryDeclaresWhatADamagedChunkDeclared) {
+  IndexedFile file;
+  file.channel(channelOf(1, "a"));
+  file.message(1, 1);
+  file.closeChunk();
+  file.message(1, 2);
+  file.closeChunk();
+  file.change_summary = [](IndexedFile& f) { f.chunks[1].start_time_ns = 0; };  // so that it is not used otherwise
+  Bytes bytes = file.finished();
+  bytes[file.chunks[0].chunk_offset + file.chunks[0].chunk_length - 1] ^= std::byte{1};
+  saveFile(path, bytes);
+  EXPECT_EQ(logTimesOf(Reader(path, tolerant())), std::vector<std::uint64_t>{2});
+}
+
+TEST_F(SalvageTest, DeclarationsCountWhateverFollowsThem) {
+  FileBuilder file;
+  Bytes records;
+  appendChannel(records, channelOf(1, "a"));
+  appendNumber(records, std::uint8_t{0x05});
+  appendNumber(records, std::uint64_t{1} << 40);  // a record that does not fit
+  file.chunk(records, 0, 0);
+  records.clear();
+  appendMessage(records, {.channel_id = ChannelId{1}, .log_time_ns = 3});
+  file.chunk(records, 3, 3);
+  saveFile(path, file.bytes);
+  EXPECT_EQ(logTimesOf(Reader(path, tolerant())), std::vector<std::uint64_t>{3});
+  EXPECT_EQ(damage.size(), 1U);
+}
+
+TEST_F(SalvageTest, AChunkWhoseOpcodeBecameAFootersEndsNothing) {
+  IndexedFile file;
+  for (std::uint64_t i = 0; i < 4; ++i) {
+    file.channel(channelOf(1, "a"));
+    file.message(1, i);
+    file.closeChunk();
+  }
+  Bytes bytes = file.cut();
+  bytes[file.chunks[1].chunk_offset] = std::byte{0x02};
+  saveFile(path, bytes);
+  EXPECT_EQ(logTimesOf(Reader(path, tolerant())), (std::vector<std::uint64_t>{0, 2, 3}));
+  EXPECT_FALSE(damage.empty());
+}
+
+TEST_F(SalvageTest, AFileThatInflatesWithoutEndIsRefused) {
+  const Bytes zeros(1 << 20);
+  for (const Compression compression : {Compression::kZstd, Compression::kLz4}) {
+    Compressor compressor(compression, 0);
+    FileBuilder file;
+    append(file.bytes, [] {
+      Bytes channel;
+      appendChannel(channel, channelOf(1, "a"));
+      return channel;
+    }());
+    Bytes records;
+    appendMessage(records, {.channel_id = ChannelId{1}, .log_time_ns = 1, .data = zeros});
+    for (int i = 0; i < 64; ++i) {
+      const ByteView packed = compressor.compress(records);
+      appendChunkHead(file.bytes, {.start_time_ns = 1,
+                                   .end_time_ns = 1,
+                                   .plain_size = records.size(),
+                                   .compression = std::string(compressionName(compression)),
+                                   .records = packed});
+      append(file.bytes, packed);
+    }
+    file.finish();
+    saveFile(path, file.bytes);
+    ReaderOptions options = tolerant();
+    options.max_inflated_bytes = 65 << 20;
+    EXPECT_EQ(samplesOf(Reader(path, options)).size(), 64U);
+    options.max_inflated_bytes = 20 << 20;
+    if (kMostInflation * file.bytes.size() > 64 << 20) continue;  // lz4: 1 MiB of zeros has 4 KiB
+    try {
+      const Reader reader(path, options);
+      FAIL() << "inflated all of it";
+    } catch (const UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find("mcap decompress"), std::string::npos) << error.what();
+    }
+    EXPECT_TRUE(damage.empty());
+  }
+}
+
+}  // namespace
+}  // namespace baton::mcap
