@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "base/text.hpp"
 #include "runtime/log.hpp"
 #include "runtime/signals.hpp"
 
@@ -17,7 +18,8 @@ int runGuarded(const std::string& name, const std::function<ExitCode()>& body) {
   try {
     return static_cast<int>(body());
   } catch (const Error& error) {
-    std::cerr << name << ": " << error.what() << '\n';
+    // It may name what a recording or another process calls itself.
+    std::cerr << name << ": " << escaped(error.what(), true) << '\n';
     return static_cast<int>(error.code());
   } catch (const std::filesystem::filesystem_error& error) {
     std::cerr << name << ": cannot use " << error.path1().string() << ": " << error.code().message() << '\n';

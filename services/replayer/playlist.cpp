@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "control/nearest_name.hpp"
 #include "dds/topics.hpp"
 #include "endpoints.hpp"
@@ -26,6 +27,7 @@ Playlist::Playlist(const ReplayOptions& options)
       has_range_(options.from_s || options.to_s),
       reader_(options.file, {.on_damage = [this](const mcap::Damage& damage) { noteDamage(damage); }}) {
   if (!reader_.info().is_complete) noteProblem("the recording was cut: " + reader_.info().problem);
+  for (const std::string& text : reader_.info().contradictions) spdlog::warn("{}", escaped(text));
   checkNames(options);
   filter_.start_time_ns = mcap::logTimeAt(reader_, options.from_s.value_or(0.0));
   if (options.to_s) filter_.end_time_ns = mcap::logTimeAt(reader_, *options.to_s);
@@ -53,21 +55,20 @@ void Playlist::expectTopics() const {
 }
 
 void Playlist::noteProblem(const std::string& problem) {
-  spdlog::warn("{}", problem);
+  spdlog::warn("{}", escaped(problem));
   problems_.push_back(problem);
 }
 
 /// Each pass over the file comes across the same damage.
 void Playlist::noteDamage(const mcap::Damage& damage) {
-  if (!damaged_.insert(damage.offset).second) return;
-  noteProblem(std::to_string(damage.length) + " bytes at byte " + std::to_string(damage.offset) +
-              " cannot be read: " + damage.reason);
+  if (damaged_.insert(damage).second) noteProblem(mcap::describe(damage));
 }
 
 void Playlist::checkNames(const ReplayOptions& options) const {
   const std::vector<std::string> known = mcap::topicNames(reader_);
   const auto check = [&](const std::string& topic) {
-    if (!std::binary_search(known.begin(), known.end(), topic)) throw UsageError(unknownName("topic", topic, known));
+    if (!std::binary_search(known.begin(), known.end(), topic))
+      throw UsageError(escaped(unknownName("topic", topic, known)));
   };
   for (const std::string& topic : options.topics) check(topic);
   for (const auto& [old_name, new_name] : options.remap) check(old_name);
@@ -82,7 +83,8 @@ void Playlist::chooseChannels(const ReplayOptions& options) {
       dds::EndpointOptions endpoint =
           replayEndpoint(channel, schema == reader_.schemas().end() ? nullptr : &schema->second, options.remap);
       if (isReplayersOwn(endpoint.topic)) {
-        spdlog::info("{} is left out: this replay has a topic of that name (--remap gives it another)", endpoint.topic);
+        spdlog::info("{} is left out: this replay has a topic of that name (--remap gives it another)",
+                     escaped(endpoint.topic));
         continue;
       }
       endpoints_.emplace(id, std::move(endpoint));

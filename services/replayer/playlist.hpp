@@ -59,7 +59,7 @@ class Playlist {
   const std::string file_;
   const bool has_range_;
   std::vector<std::string> problems_;
-  std::set<std::uint64_t> damaged_;  // offsets of damage told of
+  std::set<mcap::Damage> damaged_;  // that was told of
   mcap::Reader reader_;
   mcap::MessageFilter filter_;
   std::map<mcap::ChannelId, dds::EndpointOptions> endpoints_;

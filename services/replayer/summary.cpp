@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "base/text.hpp"
 #include "runtime/json.hpp"
 
 namespace baton {
@@ -34,7 +35,7 @@ std::string summaryText(const ReplayResult& result, const ReplayOptions& options
   text += fmt::format("duration     {:.3f} s for {:.3f} recorded s, {:.0f} messages/s\n", result.elapsed_s,
                       result.recorded_s, messagesPerSecond(result));
   if (result.lateness_ns.count() > 0) text += latenessText(result, options);
-  for (const std::string& problem : result.problems) text += "problem      " + problem + "\n";
+  for (const std::string& problem : result.problems) text += "problem      " + escaped(problem) + "\n";
   text.pop_back();
   return text;
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -127,6 +128,122 @@ TEST(BagCat, PrintsWhatIsLeftOfADamagedOrCutFileAndSaysSo) {
   const Finished damaged = bench.baton({"bag", "cat", file});
   EXPECT_EQ(damaged.exit_code, 1);
   EXPECT_NE(damaged.err.find("cannot be read"), std::string::npos) << damaged.err;
+}
+
+/// Ten messages of one topic, and an index that gives their first chunk the wrong times.
+std::string misindexedFile(const Bench& bench) {
+  std::string path = smallFile(bench, "misindexed.mcap");
+  std::string bytes = contentOf(path);
+  // The summary's statistics and chunk index begin with what they say of the times: 1.001 s becomes 0.
+  std::string time(8, '\0');
+  const std::uint64_t start_ns = 1'001'000'000;
+  std::memcpy(time.data(), &start_ns, time.size());
+  const std::size_t at = bytes.rfind(time);
+  EXPECT_NE(at, std::string::npos);
+  bytes.replace(at, time.size(), std::string(8, '\0'));
+  // Without a CRC of the summary: nothing but its contents is wrong.
+  bytes.replace(bytes.size() - 8 - 4, 4, std::string(4, '\0'));
+  std::ofstream(path, std::ios::binary) << bytes;
+  return path;
+}
+
+TEST(BagCommands, AgreeOnAFileWhoseIndexContradictsItsData) {
+  const Bench bench;
+  const std::string file = misindexedFile(bench);
+  const nlohmann::json info = bench.batonJson({"bag", "info", file, "--json"});
+  EXPECT_EQ(info.at("messages"), 10);
+  ASSERT_FALSE(info.at("notes").empty()) << info;
+  const Finished verified = bench.baton({"bag", "verify", file});
+  EXPECT_EQ(verified.exit_code, 2);
+  EXPECT_NE(verified.out.find("its summary contradicts its data: it gives the messages in the chunk"),
+            std::string::npos)
+      << verified.out;
+  EXPECT_EQ(linesOf(bench.baton({"bag", "cat", file}).out).size(), 10U);
+  EXPECT_EQ(linesOf(bench.baton({"bag", "cat", file, "--from", "0"}).out).size(), 10U);
+  const std::string out = (bench.folder() / "tables").string();
+  const Finished exported = bench.baton({"bag", "export", file, "--json", "--out", out});
+  EXPECT_EQ(exported.exit_code, 0) << exported.err;
+  EXPECT_EQ(linesOf(contentOf(out + "/plain.jsonl")).size(), 5U);
+  const std::string cut = (bench.folder() / "cut.mcap").string(), sound = (bench.folder() / "sound.mcap").string();
+  EXPECT_EQ(bench.batonJson({"bag", "cut", file, cut, "--from", "0", "--json"}).at("messages"), 10);
+  EXPECT_EQ(bench.batonJson({"bag", "recover", file, sound, "--json"}).at("messages"), 10);
+}
+
+TEST(BagCommands, ReadRecordingsThatWereJoinedInOneFile) {
+  const Bench bench;
+  const std::string file = (bench.folder() / "joined.mcap").string();
+  const std::string one = contentOf(smallFile(bench));
+  std::ofstream(file, std::ios::binary) << one << one;
+  const Finished info = bench.baton({"bag", "info", file});
+  EXPECT_NE(info.out.find("messages    20 in"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("another recording begins at byte " + std::to_string(one.size())), std::string::npos)
+      << info.out;
+  EXPECT_EQ(linesOf(bench.baton({"bag", "cat", file}).out).size(), 20U);
+  const Finished recovered = bench.baton({"bag", "recover", file, (bench.folder() / "out.mcap").string()});
+  EXPECT_EQ(recovered.exit_code, 0) << recovered.out;
+  EXPECT_NE(recovered.out.find("20 messages"), std::string::npos) << recovered.out;
+  EXPECT_EQ(recovered.out.find("nothing was lost"), std::string::npos) << recovered.out;
+  EXPECT_NE(bench.baton({"bag", "verify", file}).exit_code, 0);
+
+  std::ofstream(file, std::ios::binary) << one << "something else";
+  EXPECT_EQ(bench.baton({"bag", "info", file}).exit_code, 1);
+  const Finished lossy = bench.baton({"bag", "recover", file, (bench.folder() / "lossy.mcap").string()});
+  EXPECT_EQ(lossy.exit_code, 1) << lossy.out;
+  EXPECT_NE(lossy.out.find("14 bytes follow the end of the recording"), std::string::npos) << lossy.out;
+}
+
+TEST(BagCommands, ShowNamesThatChangeNoTerminal) {
+  const Bench bench;
+  const std::string file = (bench.folder() / "hostile.mcap").string();
+  const std::string name = "a\x1b[2J\a\nb\xc2\x9b\xff";
+  {
+    mcap::Writer writer(file);
+    const mcap::SchemaId schema = writer.addSchema(name, "omgidl", mcap::asBytes("struct"));
+    const mcap::ChannelId channel = writer.addChannel(name, "cdr", schema, {{"service", name}, {"writer", name}});
+    for (std::uint32_t i = 0; i < 3; ++i) writer.write(channel, i, i, i, {});
+    writer.addMetadata("baton.run", {{"scenario", name}, {"run", name}});
+    writer.addAttachment(name, name, 0, 0, {});
+    writer.close();
+  }
+  const std::string out = (bench.folder() / "tables").string(), copy = (bench.folder() / "copy.mcap").string();
+  using Words = std::vector<std::string>;
+  for (const Words& words :
+       {Words{"info", file}, Words{"verify", file}, Words{"cat", file}, Words{"cat", file, "--topics", "x"},
+        Words{"export", file, "--csv", "--out", out}, Words{"recover", file, copy}, Words{"hash", file},
+        Words{"diff", file, file}, Words{"diff", file, file, "--topics", "x"}, Words{"info", file, "--json"},
+        Words{"verify", file, "--json"}, Words{"diff", file, file, "--json"}}) {
+    Words arguments{"bag"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    const Finished shown = bench.baton(arguments);
+    SCOPED_TRACE(words[0] + ": " + shown.out + shown.err);
+    for (const char* part : {"\x1b", "\a", "\nb"}) {
+      EXPECT_EQ((shown.out + shown.err).find(part), std::string::npos);
+    }
+    EXPECT_TRUE(words.back() != "--json" || nlohmann::json::accept(shown.out));
+  }
+}
+
+TEST(BagInfo, CountsGapsOnlyWhereSequenceNumbersAreAWriters) {
+  const Bench bench;
+  const std::string file = (bench.folder() / "gaps.mcap").string();
+  {
+    mcap::Writer writer(file);
+    // Two writers of a topic whose messages lie in the file by another order than theirs, and one that counts for all.
+    const auto channel = [&](const std::string& topic, const std::string& guid) {
+      return writer.addChannel(topic, "cdr", mcap::kNoSchema, {{"type", "T"}, {"writer", guid}});
+    };
+    const mcap::ChannelId a = channel("dds", "010f00000000000000000000.00000103");
+    const mcap::ChannelId b = channel("dds", "010f00000000000000000000.00000203");
+    const mcap::ChannelId foreign = channel("foreign", "");
+    std::uint64_t time_ns = 0;
+    for (const std::uint32_t sequence : {1U, 3U, 2U, 4U}) writer.write(a, sequence, ++time_ns, 0, {});
+    for (const std::uint32_t sequence : {7U, 10U}) writer.write(b, sequence, ++time_ns, 0, {});
+    for (const std::uint32_t sequence : {1U, 50U, 20U}) writer.write(foreign, sequence, ++time_ns, 0, {});
+    writer.close();
+  }
+  const nlohmann::json info = bench.batonJson({"bag", "info", file, "--json"});
+  EXPECT_EQ(info.at("topics").at(0).at("gaps"), 2) << info;
+  EXPECT_TRUE(info.at("topics").at(1).at("gaps").is_null()) << info;
 }
 
 TEST(BagExport, WritesATableForEachTopicAndNothingOverAnother) {

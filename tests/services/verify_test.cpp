@@ -182,6 +182,25 @@ TEST_F(VerifyTest, ARecordingOfSomebodyElseIsNotProven) {
   EXPECT_TRUE(mentions(found.missing, "not recorded by Baton")) << all(found);
 }
 
+TEST_F(VerifyTest, AFileThatContradictsItselfIsNamed) {
+  const std::string file = (bench.folder() / "redefined.mcap").string();
+  mcap::Bytes bytes(mcap::kMagic.begin(), mcap::kMagic.end());
+  mcap::appendHeader(bytes, {});
+  for (const char* topic : {"one", "other"}) {
+    mcap::appendChannel(
+        bytes, {.id = mcap::ChannelId{1}, .schema_id = mcap::kNoSchema, .topic = topic, .message_encoding = "cdr"});
+    mcap::appendMessage(bytes, {.channel_id = mcap::ChannelId{1}});
+  }
+  mcap::appendDataEnd(bytes, {});
+  mcap::appendFooter(bytes, {});
+  mcap::append(bytes, mcap::kMagic);
+  std::ofstream(file, std::ios::binary) << std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const Verification found = verify({file});
+  EXPECT_EQ(found.verdict(), RecordingVerdict::kDamaged);
+  EXPECT_TRUE(mentions(found.damage, "channel 1 is declared again")) << all(found);
+  EXPECT_EQ(found.messages, 2U);
+}
+
 /// Every byte counts: whichever is changed, the recording is not proven any more.
 TEST_F(VerifyTest, AnyChangedByteIsFound) {
   const std::string file = write({.samples = 12, .chunk_bytes = 1024})[0];  // several chunks, and seconds for all bytes

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace baton {
 
@@ -31,7 +32,11 @@ std::unique_ptr<mcap::Reader> openForCopy(const std::string& file) {
   auto reader = std::make_unique<mcap::Reader>(file);
   const mcap::FileInfo& info = reader->info();
   if (!info.is_complete) {
-    std::fprintf(stderr, "%s is not whole, and is used as far as it goes: %s\n", file.c_str(), info.problem.c_str());
+    std::fprintf(stderr, "%s is not whole, and is used as far as it goes: %s\n", file.c_str(),
+                 escaped(info.problem).c_str());
+  }
+  for (const std::string& text : info.contradictions) {
+    std::fprintf(stderr, "%s is copied as its data have it: %s\n", file.c_str(), escaped(text).c_str());
   }
   return reader;
 }

@@ -7,13 +7,16 @@
 
 #include "bag/recording_diff.hpp"
 #include "bag/subcommands.hpp"
+#include "base/text.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
 
 namespace baton {
 namespace {
 
-std::string nameOf(const StreamKey& key) { return key.second.empty() ? key.first : key.first + " of " + key.second; }
+std::string nameOf(const StreamKey& key) {
+  return escaped(key.second.empty() ? key.first : key.first + " of " + key.second);
+}
 
 std::string textOf(const Position& at) {
   std::string text = at.step ? "step " + std::to_string(*at.step) : "message " + std::to_string(at.index + 1);
@@ -24,7 +27,7 @@ std::string textOf(const Position& at) {
 
 std::string textOf(const FirstDifference& first) {
   const FieldDifference& what = first.what;
-  return textOf(first.at) + (what.field.empty() ? "" : ", " + what.field) + ": " + what.a + " | " + what.b;
+  return textOf(first.at) + escaped((what.field.empty() ? "" : ", " + what.field) + ": " + what.a + " | " + what.b);
 }
 
 /// Which take of each recording is compared; empty where neither was reset.
@@ -40,20 +43,22 @@ std::string takesText(const RecordingDiff& diff) {
 void printText(const DiffRequest& request, const RecordingDiff& diff) {
   std::size_t topic_width = 5, service_width = 7;
   for (const auto& [key, stream] : diff.streams) {
-    topic_width = std::max(topic_width, key.first.size());
-    service_width = std::max(service_width, key.second.size());
+    topic_width = std::max(topic_width, escaped(key.first).size());
+    service_width = std::max(service_width, escaped(key.second).size());
   }
   const auto first = diff.firstDifferent();
   fmt::print("{}: A {}, B {}\n{}", diff.isSame() ? "same" : "different", request.a, request.b, takesText(diff));
   if (first) {
     fmt::print("first       {}, {}\n", nameOf(*first), textOf(*diff.streams.at(*first).first));
   }
-  if (!diff.left_out.empty()) fmt::print("left out    {}\n", fmt::join(diff.left_out, ", "));
+  if (!diff.left_out.empty()) {
+    fmt::print("left out    {}\n", escaped(fmt::format("{}", fmt::join(diff.left_out, ", "))));
+  }
   fmt::print("\n{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  first difference, A | B\n", "topic", topic_width, "service",
              service_width, "compared", "different", "only in A", "only in B");
   for (const auto& [key, stream] : diff.streams) {
-    fmt::print("{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  {}\n", key.first, topic_width, key.second, service_width,
-               stream.compared, stream.different, stream.only_a, stream.only_b,
+    fmt::print("{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  {}\n", escaped(key.first), topic_width, escaped(key.second),
+               service_width, stream.compared, stream.different, stream.only_a, stream.only_b,
                stream.first ? textOf(*stream.first) : "");
   }
 }
@@ -94,7 +99,9 @@ ExitCode diff(const DiffRequest& request, bool json) {
     ProgressLine line;
     found = diffRecordings(request, [&](double part) { line.show("comparing " + progressBar(part)); });
   }
-  for (const std::string& warning : found.warnings) std::fprintf(stderr, "baton: warning: %s\n", warning.c_str());
+  for (const std::string& warning : found.warnings) {
+    std::fprintf(stderr, "baton: warning: %s\n", escaped(warning).c_str());
+  }
   if (json) {
     std::puts(toText(toJson(request, found)).c_str());
   } else {

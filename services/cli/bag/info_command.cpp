@@ -14,8 +14,11 @@
 #include <vector>
 
 #include "bag/log_times.hpp"
+#include "bag/sequence_gaps.hpp"
 #include "bag/verdict.hpp"
 #include "base/error.hpp"
+#include "base/text.hpp"
+#include "dds/types.hpp"
 #include "mcap/lookup.hpp"
 #include "runtime/json.hpp"
 
@@ -27,7 +30,7 @@ using mcap::valueOf;
 struct TopicSummary {
   std::set<std::string> writers;  // services; the GUID of one that has no name
   std::uint64_t messages = 0;
-  std::uint64_t gaps = 0;  // messages missing between those of a writer, by their sequence numbers
+  std::optional<std::uint64_t> gaps;  // missing between messages of its writers; nothing where numbers do not say so
   std::uint64_t first_ns = 0;
   std::uint64_t last_ns = 0;
 
@@ -63,6 +66,8 @@ struct BagSummary {
 RecordingVerdict verdictOn(const BagSummary& bag) {
   if (!bag.damage.empty()) return RecordingVerdict::kDamaged;
   if (!bag.info.is_complete) return RecordingVerdict::kCut;
+  // What a certificate is of is not this file as it is.
+  if (!bag.info.contradictions.empty() && (bag.certificate || !bag.run.empty())) return RecordingVerdict::kIncomplete;
   // A finished file of somebody else has none; the parts of one recording have one, in the last.
   const bool needs_certificate = !bag.run.empty() && bag.next_part.empty();
   const bool is_certified = bag.certificate && valueOf(*bag.certificate, "complete") == "true";
@@ -74,6 +79,9 @@ RecordingVerdict verdictOn(const BagSummary& bag) {
 std::string reasonFor(const BagSummary& bag) {
   if (!bag.damage.empty()) return bag.damage.front();
   if (!bag.info.is_complete) return bag.info.problem;
+  if (verdictOn(bag) == RecordingVerdict::kIncomplete && !bag.info.contradictions.empty()) {
+    return "it contradicts itself, so that no certificate holds for it";
+  }
   if (bag.certificate) return "by its certificate: " + valueOf(*bag.certificate, "summary");
   if (!bag.next_part.empty()) return "a part of a recording that goes on in " + bag.next_part;
   return bag.run.empty() ? "finished; it was not recorded by Baton and has no certificate" : "it has no certificate";
@@ -81,23 +89,22 @@ std::string reasonFor(const BagSummary& bag) {
 
 /// Reads all messages, so that every CRC is checked and every gap is found.
 void readMessages(const mcap::Reader& reader, BagSummary& bag) {
-  std::map<mcap::ChannelId, std::uint32_t> sequences;
+  std::map<mcap::ChannelId, SequenceGaps*> counted;  // null: of one whose numbers count something else
+  std::map<std::pair<TopicSummary*, std::string>, SequenceGaps> writers;
   reader.forEachMessage({.order = mcap::MessageFilter::Order::kFile}, [&](const mcap::MessageView& message) {
     const mcap::Channel& channel = *message.channel;
     const std::string type = valueOf(channel.metadata, "type");
     const bool has_type = !type.empty() || message.schema == nullptr;
     TopicSummary& topic = bag.topics[{channel.topic, has_type ? type : message.schema->name}];
-    const auto [last, is_first] = sequences.try_emplace(channel.id, message.sequence);
+    const auto [gaps, is_first] = counted.try_emplace(channel.id, nullptr);
     if (is_first) {
-      const std::string service = valueOf(channel.metadata, "service");
-      const std::string writer = service.empty() ? valueOf(channel.metadata, "writer") : service;
-      if (!writer.empty()) topic.writers.insert(writer);
-    } else {
-      // Sequence numbers may wrap; one that does not grow is of a writer that does not count.
-      const std::uint32_t growth = message.sequence - last->second;
-      if (growth > 1 && growth < 0x8000'0000U) topic.gaps += growth - 1;
-      last->second = message.sequence;
+      const std::string service = valueOf(channel.metadata, "service"), guid = valueOf(channel.metadata, "writer");
+      if (const std::string& writer = service.empty() ? guid : service; !writer.empty()) topic.writers.insert(writer);
+      // A channel of one DDS writer has its sequence numbers. In other files they may be anything, such as one count
+      // for all channels.
+      if (dds::guidCalled(guid)) gaps->second = &writers[{&topic, guid}];
     }
+    if (gaps->second != nullptr) gaps->second->add(message.sequence);
     topic.first_ns = topic.messages == 0 ? message.log_time_ns : std::min(topic.first_ns, message.log_time_ns);
     topic.last_ns = std::max(topic.last_ns, message.log_time_ns);
     ++topic.messages;
@@ -107,20 +114,18 @@ void readMessages(const mcap::Reader& reader, BagSummary& bag) {
     ++bag.messages;
     bag.plain_bytes += mcap::kMessageHeadBytes + message.data.size();
   });
+  for (const auto& [key, gaps] : writers) key.first->gaps = key.first->gaps.value_or(0) + gaps.missing();
 }
 
 BagSummary summarize(const std::string& file) {
   BagSummary bag;
   bag.file = file;
-  std::map<std::uint64_t, std::string> damage;  // by place: each pass comes across the same
-  const mcap::Reader reader(file, {.on_damage = [&damage](const mcap::Damage& found) {
-                              damage[found.offset] = fmt::format("{} bytes at byte {} cannot be read: {}", found.length,
-                                                                 found.offset, found.reason);
-                            }});
+  std::set<mcap::Damage> damage;  // each pass comes across the same
+  const mcap::Reader reader(file, {.on_damage = [&damage](const mcap::Damage& found) { damage.insert(found); }});
   bag.info = reader.info();
   bag.attachments = reader.attachments();
   readMessages(reader, bag);
-  for (const auto& [offset, text] : damage) bag.damage.push_back(text);
+  for (const mcap::Damage& found : damage) bag.damage.push_back(mcap::describe(found));
   try {
     for (const mcap::Metadata& metadata : reader.metadata()) {
       if (metadata.name == "baton.run") bag.run = metadata.values;
@@ -137,24 +142,32 @@ BagSummary summarize(const std::string& file) {
 void printTopics(const BagSummary& bag) {
   std::size_t name_width = 5, type_width = 4;
   for (const auto& [key, topic] : bag.topics) {
-    name_width = std::max(name_width, key.first.size());
-    type_width = std::max(type_width, key.second.size());
+    name_width = std::max(name_width, escaped(key.first).size());
+    type_width = std::max(type_width, escaped(key.second).size());
   }
   fmt::print("\n{:<{}}  {:<{}}  {:>9}  {:>9}  {:>6}  writers\n", "topic", name_width, "type", type_width, "messages",
              "rate [Hz]", "gaps");
   for (const auto& [key, topic] : bag.topics) {
-    fmt::print("{:<{}}  {:<{}}  {:>9}  {:>9.1f}  {:>6}  {}\n", key.first, name_width, key.second, type_width,
-               topic.messages, topic.rate(), topic.gaps, fmt::join(topic.writers, ", "));
+    fmt::print("{:<{}}  {:<{}}  {:>9}  {:>9.1f}  {:>6}  {}\n", escaped(key.first), name_width, escaped(key.second),
+               type_width, topic.messages, topic.rate(), topic.gaps ? fmt::to_string(*topic.gaps) : "-",
+               escaped(fmt::format("{}", fmt::join(topic.writers, ", "))));
   }
+}
+
+/// What a reader should know although all of it could be read.
+std::vector<std::string> notesOn(const BagSummary& bag) {
+  std::vector<std::string> notes = bag.info.contradictions;
+  if (bag.info.is_complete && !bag.info.problem.empty()) notes.insert(notes.begin(), bag.info.problem);
+  return notes;
 }
 
 void printText(const BagSummary& bag) {
   fmt::print("{}: {}\n", bag.file, nameOf(verdictOn(bag)));
-  fmt::print("            {}\n", reasonFor(bag));
-  for (std::size_t i = 1; i < bag.damage.size(); ++i) fmt::print("            {}\n", bag.damage[i]);
-  if (bag.info.is_complete && !bag.info.problem.empty()) fmt::print("note        {}\n", bag.info.problem);
+  fmt::print("            {}\n", escaped(reasonFor(bag)));
+  for (std::size_t i = 1; i < bag.damage.size(); ++i) fmt::print("            {}\n", escaped(bag.damage[i]));
+  for (const std::string& note : notesOn(bag)) fmt::print("note        {}\n", escaped(note));
   if (!bag.run.empty()) {
-    const auto of = [&](const char* key) { return valueOf(bag.run, key); };
+    const auto of = [&](const char* key) { return escaped(valueOf(bag.run, key)); };
     fmt::print("recorded    {} with robot {}, run {} of cell {} on {}\n", of("scenario"), of("robot"), of("run"),
                of("cell"), of("host"));
     fmt::print("by          Baton {}, {} ({})\n", of("version"), of("compiler"), of("flags"));
@@ -164,7 +177,8 @@ void printText(const BagSummary& bag) {
   fmt::print("size        {:.2f} MB, messages compressed {:.2f} : 1\n", static_cast<double>(bag.info.file_bytes) * 1e-6,
              bag.compression());
   for (const mcap::AttachmentIndex& attachment : bag.attachments) {
-    fmt::print("attachment  {} ({}, {} bytes)\n", attachment.name, attachment.media_type, attachment.data_size);
+    fmt::print("attachment  {} ({}, {} bytes)\n", escaped(attachment.name), escaped(attachment.media_type),
+               attachment.data_size);
   }
   printTopics(bag);
 }
@@ -177,7 +191,8 @@ nlohmann::ordered_json toJson(const BagSummary& bag) {
                       {"writers", topic.writers},
                       {"messages", topic.messages},
                       {"rate_Hz", topic.rate()},
-                      {"gaps", topic.gaps}});
+                      {"gaps", nullptr}});
+    if (topic.gaps) topics.back()["gaps"] = *topic.gaps;
   }
   nlohmann::ordered_json attachments = nlohmann::ordered_json::array();
   for (const mcap::AttachmentIndex& attachment : bag.attachments) {
@@ -188,6 +203,7 @@ nlohmann::ordered_json toJson(const BagSummary& bag) {
                               {"verdict", nameOf(verdictOn(bag))},
                               {"reason", reasonFor(bag)},
                               {"damage", bag.damage},
+                              {"notes", notesOn(bag)},
                               {"cut_at_B", nullptr},
                               {"run", bag.run},
                               {"certificate", nullptr},
@@ -218,7 +234,9 @@ void addBagInfo(CLI::App& bag, ExitCode& exit_code) {
   const auto request = std::make_shared<InfoRequest>();
   CLI::App* command = bag.add_subcommand("info", "what a recording is of, what is in it, and whether it is whole");
   command->footer(
-      "Reads the whole file, so that every checksum is checked and every gap is found.\n"
+      "Reads the whole file, so that every checksum is checked and every gap is found. Gaps are counted per writer "
+      "where\n"
+      "the file says that its sequence numbers are a DDS writer's; `-` where they may be anything.\n"
       "Exit codes: 0 complete, 1 incomplete or cut, 2 damaged or not a recording, 3 cannot be opened.");
   command->add_option("file", request->file, "recording (MCAP)")->required();
   command->add_flag("--json", request->json, "as a JSON object");

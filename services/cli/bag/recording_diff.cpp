@@ -10,6 +10,7 @@
 #include "bag/recorded_types.hpp"
 #include "bag/selection.hpp"
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "control/nearest_name.hpp"
 #include "dds/topics.hpp"
 #include "mcap/lookup.hpp"
@@ -42,6 +43,7 @@ struct Side {
   explicit Side(const std::string& file, std::vector<std::string>& warnings)
       : reader(file), types([&, file](const std::string& problem) { warnings.push_back(file + ": " + problem); }) {
     if (!reader.info().is_complete) warnings.push_back(file + ": it was cut: " + reader.info().problem);
+    for (const std::string& text : reader.info().contradictions) warnings.push_back(file + ": " + text);
   }
   [[nodiscard]] const mcap::Schema* schemaOf(const mcap::Channel& channel) const {
     const auto found = reader.schemas().find(channel.schema_id);
@@ -101,7 +103,7 @@ class Differ {
     const std::vector<std::string> names(all.begin(), all.end());
     for (const std::string& topic : names) rules_.meetTopic(topic);
     for (const std::string& topic : request.topics) {
-      if (!all.contains(topic)) throw UsageError(unknownName("topic", topic, names));
+      if (!all.contains(topic)) throw UsageError(escaped(unknownName("topic", topic, names)));
     }
     const bool has_loop = std::ranges::any_of(names, isOfTheLoop);
     const auto isCompared = [&](const std::string& topic) {

@@ -6,6 +6,7 @@
 
 #include "bag/copy_target.hpp"
 #include "bag/subcommands.hpp"
+#include "base/text.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
 
@@ -18,26 +19,39 @@ struct RecoverRequest {
   bool json = false;
 };
 
-std::uint64_t bytesOf(const std::vector<mcap::Damage>& lost) {
-  std::uint64_t bytes = 0;
-  for (const mcap::Damage& damage : lost) bytes += damage.length;
-  return bytes;
+std::uint64_t sumOf(const std::vector<mcap::Damage>& lost, std::uint64_t mcap::Damage::*what) {
+  std::uint64_t sum = 0;
+  for (const mcap::Damage& damage : lost) sum += damage.*what;
+  return sum;
 }
+
+std::uint64_t bytesOf(const std::vector<mcap::Damage>& lost) { return sumOf(lost, &mcap::Damage::length); }
+std::uint64_t messagesOf(const std::vector<mcap::Damage>& lost) { return sumOf(lost, &mcap::Damage::messages); }
 
 /// What the input was, in a sentence.
 std::string verdictOn(const mcap::Recovery& found) {
+  if (const std::uint64_t messages = messagesOf(found.lost); messages > 0) {
+    return fmt::format("{} of its bytes could not be read, and {} messages more are lost", bytesOf(found.lost),
+                       messages);
+  }
   if (!found.lost.empty()) return fmt::format("{} of its bytes could not be read", bytesOf(found.lost));
   if (found.is_whole) return "it was whole, and is copied";
   if (found.is_changed)
     return "bytes between its chunks were changed, as the CRC of its data says: something may be lost";
+  if (!found.info.contradictions.empty()) return "all of it could be read, and is copied as its data have it";
   return "nothing was lost, it has its index again: " + found.info.problem;
 }
 
 void printText(const RecoverRequest& request, const mcap::Recovery& found) {
-  fmt::print("{}: {}\n", request.in, verdictOn(found));
+  fmt::print("{}: {}\n", request.in, escaped(verdictOn(found)));
   for (const mcap::Damage& damage : found.lost) {
-    fmt::print("lost        {} bytes from byte {} on: {}\n", damage.length, damage.offset, damage.reason);
+    if (damage.messages > 0) {
+      fmt::print("lost        {}\n", escaped(mcap::describe(damage)));
+    } else {
+      fmt::print("lost        {} bytes from byte {} on: {}\n", damage.length, damage.offset, escaped(damage.reason));
+    }
   }
+  for (const std::string& note : found.info.contradictions) fmt::print("note        {}\n", escaped(note));
   fmt::print("recovered   {}: {} messages, {} attachments, {} metadata records\n", request.out.file, found.messages,
              found.attachments, found.metadata);
 }
@@ -45,11 +59,22 @@ void printText(const RecoverRequest& request, const mcap::Recovery& found) {
 nlohmann::ordered_json toJson(const RecoverRequest& request, const mcap::Recovery& found) {
   nlohmann::ordered_json lost = nlohmann::ordered_json::array();
   for (const mcap::Damage& damage : found.lost) {
-    lost.push_back({{"from_B", damage.offset}, {"length_B", damage.length}, {"reason", damage.reason}});
+    lost.push_back({{"from_B", damage.offset},
+                    {"length_B", damage.length},
+                    {"messages", damage.messages},
+                    {"reason", damage.reason}});
   }
-  return {{"file", request.in},          {"out", request.out.file},          {"whole", found.is_whole},
-          {"verdict", verdictOn(found)}, {"lost_B", bytesOf(found.lost)},    {"lost", lost},
-          {"messages", found.messages},  {"attachments", found.attachments}, {"metadata", found.metadata}};
+  return {{"file", request.in},
+          {"out", request.out.file},
+          {"whole", found.is_whole},
+          {"verdict", verdictOn(found)},
+          {"lost_B", bytesOf(found.lost)},
+          {"lost", lost},
+          {"lost_messages", messagesOf(found.lost)},
+          {"notes", found.info.contradictions},
+          {"messages", found.messages},
+          {"attachments", found.attachments},
+          {"metadata", found.metadata}};
 }
 
 ExitCode recover(const RecoverRequest& request) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "base/text.hpp"
 #include "control/nearest_name.hpp"
 #include "mcap/lookup.hpp"
 #include "runtime/command_line.hpp"
@@ -32,7 +33,7 @@ void addTimeSelection(CLI::App& command, Selection& selection) {
 mcap::MessageFilter filterOf(const Selection& selection, const mcap::Reader& reader) {
   const std::vector<std::string> known = mcap::topicNames(reader);
   for (const std::string& topic : selection.topics) {
-    if (!std::ranges::binary_search(known, topic)) throw UsageError(unknownName("topic", topic, known));
+    if (!std::ranges::binary_search(known, topic)) throw UsageError(escaped(unknownName("topic", topic, known)));
   }
   mcap::MessageFilter filter{.topics = selection.topics};
   if (selection.from_s) filter.start_time_ns = mcap::logTimeAt(reader, *selection.from_s);
@@ -47,19 +48,27 @@ mcap::MessageFilter filterOf(const Selection& selection, const mcap::Reader& rea
 }
 
 SelectedMessages::SelectedMessages(const Selection& selection)
-    : file_(selection.file),
-      reader_(selection.file, {.on_damage = [this](const mcap::Damage& damage) {
-                if (!damage_.try_emplace(damage.offset, damage.reason).second) return;
-                complain(std::to_string(damage.length) + " bytes at byte " + std::to_string(damage.offset) +
-                         " cannot be read and are left out: " + damage.reason);
-              }}) {
-  if (!reader_.info().is_complete) complain("it was cut: " + reader_.info().problem);
+    : file_(selection.file), reader_(selection.file, {.on_damage = [this](const mcap::Damage& damage) {
+                                       if (damage_.insert(damage).second)
+                                         complain(mcap::describe(damage) + "; left out");
+                                     }}) {
+  const mcap::FileInfo& info = reader_.info();
+  if (!info.is_complete) {
+    complain("it was cut: " + info.problem);
+  } else if (!info.problem.empty() && !info.is_unindexed) {
+    warn(info.problem);
+  }
+  for (const std::string& text : info.contradictions) warn(text);
   filter_ = filterOf(selection, reader_);
 }
 
-void SelectedMessages::complain(const std::string& problem) {
+void SelectedMessages::warn(const std::string& problem) {
   progress_.show("");
-  std::fprintf(stderr, "baton: warning: %s: %s\n", file_.c_str(), problem.c_str());
+  std::fprintf(stderr, "baton: warning: %s: %s\n", file_.c_str(), escaped(problem).c_str());
+}
+
+void SelectedMessages::complain(const std::string& problem) {
+  warn(problem);
   has_problem_ = true;
 }
 

@@ -3,8 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
-#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,7 +48,9 @@ class SelectedMessages {
  private:
   [[nodiscard]] std::uint64_t expectedMessages() const;
 
-  std::map<std::uint64_t, std::string> damage_;  // by place: each pass comes across the same
+  void warn(const std::string& problem);
+
+  std::set<mcap::Damage> damage_;  // each pass comes across the same
   bool has_problem_ = false;
   std::string file_;
   ProgressLine progress_;

@@ -25,7 +25,8 @@ namespace {
 /// One file of the recording.
 struct Part {
   std::string file;
-  std::map<std::uint64_t, std::string> damage{};  // by place: each pass comes across the same
+  std::set<mcap::Damage> damage{};  // each pass comes across the same
+  std::string unreadable{};         // the first of its metadata and attachments that is; empty: none
   std::unique_ptr<mcap::Reader> reader{};
   std::string run{};                // empty: not recorded by Baton
   std::optional<unsigned> index{};  // in a recording that was split
@@ -35,10 +36,7 @@ struct Part {
 /// Its metadata and attachments are read here, so that their damage shows.
 void openPart(Part& part, const std::function<void(double)>& progress) {
   mcap::ReaderOptions options;
-  options.on_damage = [&part](const mcap::Damage& found) {
-    part.damage[found.offset] =
-        fmt::format("{}: {} bytes at byte {} cannot be read: {}", part.file, found.length, found.offset, found.reason);
-  };
+  options.on_damage = [&part](const mcap::Damage& found) { part.damage.insert(found); };
   options.on_progress = [&progress](std::uint64_t done, std::uint64_t of) {
     progress(static_cast<double>(done) / static_cast<double>(of));
   };
@@ -52,7 +50,7 @@ void openPart(Part& part, const std::function<void(double)>& progress) {
       (void)part.reader->readAttachment(attachment);
     }
   } catch (const mcap::FormatError& error) {
-    part.damage[part.reader->info().file_bytes] = error.what();
+    part.unreadable = error.what();
   }
 }
 
@@ -119,8 +117,7 @@ class Booking {
       result_.missing.push_back(fmt::format("{}: {} messages come twice, or behind later ones of their writer",
                                             part.file, std::exchange(repeated_, 0)));
     }
-    if (part.damage.empty() && reader.info().is_complete) compareCounts(part);
-    if (crc.get() == false && part.damage.empty()) {
+    if (crc.get() == false && part.damage.empty() && part.unreadable.empty()) {
       result_.damage.push_back(part.file + ": the CRC of its data section is wrong: bytes between the chunks changed");
     }
   }
@@ -152,19 +149,6 @@ class Booking {
   Ledger::Stream* streamOf(const mcap::Channel& channel) {
     const auto guid = dds::guidCalled(mcap::valueOf(channel.metadata, "writer"));
     return guid ? &result_.ledger.streamOf({channel.topic, *guid}) : nullptr;
-  }
-
-  void compareCounts(const Part& part) {
-    for (const auto& [id, channel] : part.reader->channels()) {
-      const auto& counts = part.reader->statistics().channel_message_counts;
-      const auto listed = counts.find(id);
-      const std::uint64_t expected = listed == counts.end() ? 0 : listed->second;
-      const auto slot = static_cast<std::size_t>(id);
-      const std::uint64_t found = slot < accounts_.size() ? accounts_[slot].count : 0;
-      if (found == expected) continue;
-      result_.damage.push_back(fmt::format("{}: its index counts {} messages of {} where {} are", part.file, expected,
-                                           channel.topic, found));
-    }
   }
 
   Verification& result_;
@@ -218,8 +202,10 @@ void judge(const std::vector<Part>& parts, bool are_all, const std::optional<std
     to.insert(to.end(), sentences.begin(), sentences.end());
   };
   for (const Part& part : parts) {
-    for (const auto& [offset, text] : part.damage) result.damage.push_back(text);
+    for (const mcap::Damage& found : part.damage) result.damage.push_back(part.file + ": " + mcap::describe(found));
+    if (!part.unreadable.empty()) result.damage.push_back(part.unreadable);
     const mcap::FileInfo& info = part.reader->info();
+    for (const std::string& text : info.contradictions) result.damage.push_back(part.file + ": " + text);
     if (info.problem.empty()) continue;
     auto& findings = !info.is_complete ? result.cuts : info.is_unindexed ? result.missing : result.damage;
     findings.push_back(part.file + ": " + info.problem);

@@ -7,6 +7,7 @@
 
 #include "bag/subcommands.hpp"
 #include "bag/verify.hpp"
+#include "base/text.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
 
@@ -31,10 +32,10 @@ void printText(const Verification& found) {
       fmt::print("            ended, so nobody vouches for what was sent last\n");
     }
     fmt::print("            and the certificate in the file agrees; every checksum is right\n");
-    if (found.summary != "complete") fmt::print("            by its certificate: {}\n", found.summary);
+    if (found.summary != "complete") fmt::print("            by its certificate: {}\n", escaped(found.summary));
   }
   for (const auto* findings : {&found.damage, &found.cuts, &found.missing}) {
-    for (const std::string& text : *findings) fmt::print("            {}\n", text);
+    for (const std::string& text : *findings) fmt::print("            {}\n", escaped(text));
   }
   for (const std::string& text : found.log_times.findings()) fmt::print("note        {}\n", text);
   fmt::print("messages    {} in {} streams\n", found.messages, found.ledger.streams().size());
