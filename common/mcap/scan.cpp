@@ -255,7 +255,7 @@ class Scan {
     for (std::string& text : found.contradictions) contradict(std::move(text));
     if (!is_sound) return;
     if (!found.undeclared.empty()) options_.on_damage(undeclaredIn(found));
-    if (extent.is_chunk) checkTimes(found.extent, found.counts.empty());
+    if (extent.is_chunk && !found.counts.empty() && found.undeclared.empty()) checkTimes(found.extent);
     if (extent.is_chunk) indexed_ = {.chunk = extent, .entries = std::move(found.entries)};
     if (found.counts.empty()) return;
     Statistics& statistics = index_.statistics;
@@ -286,10 +286,10 @@ class Scan {
   }
 
   /// What a chunk's head says of its messages.
-  void checkTimes(const Extent& chunk, bool is_empty) {
+  void checkTimes(const Extent& chunk) {
     const std::uint64_t body = chunk.offset + kRecordHeadBytes;
     const auto start = numberAt<std::uint64_t>(file_, body), end = numberAt<std::uint64_t>(file_, body + 8);
-    if (is_empty || (start == chunk.start_time_ns && end == chunk.end_time_ns)) return;
+    if (start == chunk.start_time_ns && end == chunk.end_time_ns) return;
     contradict("the " + placeOf(chunk) + " gives its messages the times " + std::to_string(start) + " to " +
                std::to_string(end) + " ns, they have " + std::to_string(chunk.start_time_ns) + " to " +
                std::to_string(chunk.end_time_ns));

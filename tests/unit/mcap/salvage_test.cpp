@@ -100,6 +100,7 @@ TEST_F(SalvageTest, AMessageOfAnUndeclaredChannelCostsItselfAlone) {
     const Recovery found = recover(path, folder.file("out.mcap"), options);
     EXPECT_EQ(found.messages, 4U);
     EXPECT_EQ(found.lost.size(), is_cut ? 3U : 2U);
+    EXPECT_TRUE(found.info.contradictions.empty()) << found.info.contradictions.front();
   }
 }
 
