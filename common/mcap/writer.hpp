@@ -4,7 +4,8 @@
 /// process killed at any instant leaves behind is readable up to its last whole chunk, because schemas and channels go
 /// into the data before their first message as well as into the summary at the end. Each chunk declares the channels
 /// it has messages of, and their schemas: no chunk needs another, so a damaged one costs what is in it and no more.
-/// Nothing is allocated per message or per chunk once the buffers have grown, but for one index entry a chunk.
+/// With chunks of 256 KiB that is 3 to 4 % of the file of a short run. Nothing is allocated per message or per chunk
+/// once the buffers have grown, but for one index entry a chunk.
 ///
 /// One thread at a time. The bytes depend on the calls only: no clock, no random number.
 #pragma once

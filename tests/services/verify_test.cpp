@@ -203,7 +203,7 @@ TEST_F(VerifyTest, AFileThatContradictsItselfIsNamed) {
 
 /// Every byte counts: whichever is changed, the recording is not proven any more.
 TEST_F(VerifyTest, AnyChangedByteIsFound) {
-  const std::string file = write({.samples = 12, .chunk_bytes = 1024})[0];  // several chunks, and seconds for all bytes
+  const std::string file = write({.samples = 12, .chunk_bytes = 4096})[0];  // several chunks, and seconds for all bytes
   const auto size = static_cast<std::streamoff>(std::filesystem::file_size(file));
   std::fstream bytes(file, std::ios::binary | std::ios::in | std::ios::out);
   const auto change = [&](std::streamoff at) {
