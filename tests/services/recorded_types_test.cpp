@@ -1,5 +1,5 @@
 /// The types of a recording's messages, as its schemas declare them.
-#include "bag/recorded_types.hpp"
+#include "runtime/recorded_types.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "bag/message_text.hpp"
-#include "bag/recorded_types.hpp"
 #include "bag/selection.hpp"
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
 #include "runtime/command_line.hpp"
+#include "runtime/recorded_types.hpp"
 
 namespace baton {
 namespace {

@@ -12,12 +12,12 @@
 #include "bag/csv_columns.hpp"
 #include "bag/export_files.hpp"
 #include "bag/message_text.hpp"
-#include "bag/recorded_types.hpp"
 #include "bag/selection.hpp"
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
 #include "mcap/lookup.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/recorded_types.hpp"
 #include "schema/error.hpp"
 
 namespace baton {

@@ -130,18 +130,4 @@ std::optional<FieldDifference> compare(const TypedPayload& a, const TypedPayload
   return FieldDifference{"", sizeOf(a), sizeOf(b) + ": the same values, encoded otherwise"};
 }
 
-std::optional<std::uint64_t> stepOf(const TypedPayload& message) {
-  if (message.type == nullptr || message.type->kind != schema::Kind::kStruct) return std::nullopt;
-  const auto member = std::ranges::find(message.type->members, "step", &schema::Member::name);
-  if (member == message.type->members.end() || member->type->kind != schema::Kind::kUint64) return std::nullopt;
-  try {
-    schema::MessageReader reader(*message.type, message.bytes);
-    for (Item item; reader.next(item);) {
-      if (item.member == &*member) return std::get<std::uint64_t>(item.value);
-    }
-  } catch (const schema::PayloadError&) {  // compared as it is, in its order
-  }
-  return std::nullopt;
-}
-
 }  // namespace baton

@@ -7,6 +7,7 @@
 
 #include "bag/field_rules.hpp"
 #include "schema/message_reader.hpp"
+#include "schema/step.hpp"
 
 namespace baton {
 
@@ -27,7 +28,8 @@ struct TypedPayload {
 [[nodiscard]] std::optional<FieldDifference> compare(const TypedPayload& a, const TypedPayload& b,
                                                      const FieldRules& rules);
 
-/// The value of the struct's member `step`; nothing when it has none or the bytes are no such message.
-[[nodiscard]] std::optional<std::uint64_t> stepOf(const TypedPayload& message);
+[[nodiscard]] inline std::optional<std::uint64_t> stepOf(const TypedPayload& message) {
+  return message.type == nullptr ? std::nullopt : schema::stepOf(*message.type, message.bytes);
+}
 
 }  // namespace baton

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "bag/recorded_types.hpp"
 #include "mcap/lookup.hpp"
+#include "runtime/recorded_types.hpp"
 #include "schema/error.hpp"
 
 namespace baton {

@@ -7,14 +7,14 @@
 #include <tuple>
 #include <utility>
 
-#include "bag/recorded_types.hpp"
 #include "bag/selection.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "control/nearest_name.hpp"
 #include "dds/topics.hpp"
 #include "mcap/lookup.hpp"
-#include "report/recording.hpp"
+#include "runtime/recorded_take.hpp"
+#include "runtime/recorded_types.hpp"
 
 namespace baton {
 namespace {

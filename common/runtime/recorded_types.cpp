@@ -1,4 +1,4 @@
-#include "bag/recorded_types.hpp"
+#include "runtime/recorded_types.hpp"
 
 #include <string_view>
 

@@ -1,0 +1,56 @@
+#include "runtime/recorded_extras.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "mcap/lookup.hpp"
+
+namespace baton {
+
+std::optional<std::string> attachmentText(const mcap::Reader& reader, const std::string& name) {
+  for (const mcap::AttachmentIndex& index : reader.attachments()) {
+    if (index.name != name) continue;
+    const mcap::Bytes data = reader.readAttachment(index);
+    return std::string(reinterpret_cast<const char*>(data.data()), data.size());
+  }
+  return std::nullopt;
+}
+
+mcap::StringMap metadataOf(const mcap::Reader& reader, const std::string& record) {
+  mcap::StringMap values;
+  for (const mcap::Metadata& one : reader.metadata()) {
+    if (one.name == record) values.insert(one.values.begin(), one.values.end());
+  }
+  return values;
+}
+
+std::string metadataValue(const mcap::Reader& reader, const std::string& record, const std::string& key) {
+  return mcap::valueOf(metadataOf(reader, record), key);
+}
+
+bool hasTopic(const mcap::Reader& reader, const std::string& topic) {
+  const auto& counts = reader.statistics().channel_message_counts;
+  return std::ranges::any_of(reader.channels(), [&](const auto& entry) {
+    const auto count = counts.find(entry.first);
+    return entry.second.topic == topic && count != counts.end() && count->second > 0;
+  });
+}
+
+bool isLeftOut(const mcap::Reader& reader, const std::string& topic) {
+  auto text = attachmentText(reader, "certificate.json");
+  if (!text) text = attachmentText(reader, "original_certificate.json");
+  const nlohmann::json certificate = nlohmann::json::parse(text.value_or(""), nullptr, false);
+  const auto listOf = [&](const char* key) {
+    const auto list = certificate.is_object() ? certificate.find(key) : certificate.end();
+    return list != certificate.end() && list->is_array() ? *list : nlohmann::json::array();
+  };
+  const nlohmann::json left_out = listOf("left_out"), streams = listOf("streams");
+  if (std::count(left_out.begin(), left_out.end(), nlohmann::json(topic)) > 0) return true;
+  if (metadataValue(reader, "baton.cut", "topics").empty()) return false;
+  return std::any_of(streams.begin(), streams.end(), [&](const nlohmann::json& row) {
+    return row.is_object() && row.value("topic", nlohmann::json()) == topic &&
+           row.value("count", nlohmann::json()) != nlohmann::json(0);
+  });
+}
+
+}  // namespace baton

@@ -1,0 +1,38 @@
+#include "runtime/recorded_take.hpp"
+
+#include <map>
+
+#include "runtime/recorded_extras.hpp"
+#include "runtime/recorded_messages.hpp"
+
+namespace baton {
+namespace {
+
+/// For a recording without the topic that announces a reset: a take begins where the steps go back.
+Take lastTakeByStates(const mcap::Reader& reader) {
+  Take last;
+  std::map<mcap::ChannelId, std::uint64_t> steps;
+  forEachMessageOf(dds::topics::kPlantState, reader, 0, [&](const msg::PlantState& state, const auto& view) {
+    const auto [step, is_first] = steps.try_emplace(view.channel->id, state.step());
+    if (!is_first && state.step() < step->second) last = {.number = last.number + 1, .begin_ns = view.log_time_ns};
+    step->second = state.step();
+  });
+  return last;
+}
+
+}  // namespace
+
+std::uint64_t lastTakeBegin(const mcap::Reader& reader) { return lastTake(reader).begin_ns; }
+
+Take lastTake(const mcap::Reader& reader) {
+  const char* topic = dds::topics::kRewind.name;
+  if (!hasTopic(reader, topic) && isLeftOut(reader, topic)) return lastTakeByStates(reader);
+  Take last;
+  forEachMessageOf(dds::topics::kRewind, reader, 0, [&](const msg::Rewind& rewind, const auto& view) {
+    if (rewind.phase() != msg::REWIND_COMMIT || view.log_time_ns < last.begin_ns) return;
+    last = {.number = rewind.take(), .begin_ns = view.log_time_ns};
+  });
+  return last;
+}
+
+}  // namespace baton
