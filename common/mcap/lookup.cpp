@@ -11,17 +11,17 @@ std::string valueOf(const StringMap& map, const std::string& key) {
   return found == map.end() ? "" : found->second;
 }
 
-std::vector<std::string> topicNames(const Reader& reader) {
+std::vector<std::string> topicNames(const Source& reader) {
   std::set<std::string> names;
   for (const auto& [id, channel] : reader.channels()) names.insert(channel.topic);
   return {names.begin(), names.end()};
 }
 
-double durationOf(const Reader& reader) {
+double durationOf(const Source& reader) {
   return static_cast<double>(reader.statistics().end_time_ns - reader.statistics().start_time_ns) * 1e-9;
 }
 
-std::uint64_t logTimeAt(const Reader& reader, double seconds) {
+std::uint64_t logTimeAt(const Source& reader, double seconds) {
   constexpr double kLongest_ns = 9e18;  // fits into 64 bits
   const std::uint64_t start_ns = reader.statistics().start_time_ns;
   const auto since_ns = static_cast<std::uint64_t>(std::min(seconds * 1e9, kLongest_ns));

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mcap/reader.hpp"
+#include "mcap/source.hpp"
 
 namespace baton::mcap {
 
@@ -12,13 +12,13 @@ namespace baton::mcap {
 [[nodiscard]] std::string valueOf(const StringMap& map, const std::string& key);
 
 /// All topics of a recording, sorted.
-[[nodiscard]] std::vector<std::string> topicNames(const Reader& reader);
+[[nodiscard]] std::vector<std::string> topicNames(const Source& reader);
 
 /// From its first message to its last, in s of log time.
-[[nodiscard]] double durationOf(const Reader& reader);
+[[nodiscard]] double durationOf(const Source& reader);
 
 /// A log time from the recording's first message on; the latest there is, when that is beyond it.
 /// @param seconds  not negative.
-[[nodiscard]] std::uint64_t logTimeAt(const Reader& reader, double seconds);
+[[nodiscard]] std::uint64_t logTimeAt(const Source& reader, double seconds);
 
 }  // namespace baton::mcap

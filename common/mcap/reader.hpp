@@ -16,10 +16,11 @@
 #include <vector>
 
 #include "mcap/cursor.hpp"
+#include "mcap/source.hpp"
 
 namespace baton::mcap {
 
-class Reader {
+class Reader : public Source {
  public:
   /// Reads the whole file once, so that no index is taken that contradicts the data. Throws UnavailableError when the
   /// file cannot be opened, UsageError when it decompresses to more than is allowed, FormatError when it is not MCAP,
@@ -28,27 +29,22 @@ class Reader {
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
-  /// Whether the file is complete, and if not where it was cut and why.
-  [[nodiscard]] const FileInfo& info() const { return index_.info; }
-  [[nodiscard]] const std::map<SchemaId, Schema>& schemas() const { return index_.schemas; }
-  [[nodiscard]] const std::map<ChannelId, Channel>& channels() const { return index_.channels; }
-  /// Counts in all and per channel, first and last log time; of what is readable, when the file was cut.
-  [[nodiscard]] const Statistics& statistics() const { return index_.statistics; }
-  [[nodiscard]] const std::vector<AttachmentIndex>& attachments() const { return index_.attachments; }
-  /// An attachment's data. Throws FormatError when its CRC or its lengths are wrong.
-  /// @param attachment  one of attachments().
-  [[nodiscard]] Bytes readAttachment(const AttachmentIndex& attachment) const;
+  [[nodiscard]] const FileInfo& info() const override { return index_.info; }
+  [[nodiscard]] const std::map<SchemaId, Schema>& schemas() const override { return index_.schemas; }
+  [[nodiscard]] const std::map<ChannelId, Channel>& channels() const override { return index_.channels; }
+  [[nodiscard]] const Statistics& statistics() const override { return index_.statistics; }
+  [[nodiscard]] const std::vector<AttachmentIndex>& attachments() const override { return index_.attachments; }
+  [[nodiscard]] Bytes readAttachment(const AttachmentIndex& attachment) const override;
   [[nodiscard]] const std::vector<MetadataIndex>& metadataIndexes() const { return index_.metadata; }
   /// A metadata record. Throws FormatError when it is damaged.
   /// @param index  one of metadataIndexes().
   [[nodiscard]] Metadata readMetadata(const MetadataIndex& index) const;
-  /// All of them, in file order.
-  [[nodiscard]] std::vector<Metadata> metadata() const;
+  [[nodiscard]] std::vector<Metadata> metadata() const override;
 
   /// The messages that pass the filter, to be taken one by one.
   [[nodiscard]] MessageCursor messages(const MessageFilter& filter = {}) const;
-  /// The same, each given to the callback.
-  void forEachMessage(const MessageFilter& filter, const std::function<void(const MessageView&)>& callback) const;
+  void forEachMessage(const MessageFilter& filter,
+                      const std::function<void(const MessageView&)>& callback) const override;
 
   /// Reads the whole data section and compares it with the CRC at its end. Nothing when there is no such CRC: the file
   /// was written without, or was cut before it.
