@@ -7,7 +7,7 @@
 
 namespace baton {
 
-std::optional<std::string> attachmentText(const mcap::Reader& reader, const std::string& name) {
+std::optional<std::string> attachmentText(const mcap::Source& reader, const std::string& name) {
   for (const mcap::AttachmentIndex& index : reader.attachments()) {
     if (index.name != name) continue;
     const mcap::Bytes data = reader.readAttachment(index);
@@ -16,7 +16,7 @@ std::optional<std::string> attachmentText(const mcap::Reader& reader, const std:
   return std::nullopt;
 }
 
-mcap::StringMap metadataOf(const mcap::Reader& reader, const std::string& record) {
+mcap::StringMap metadataOf(const mcap::Source& reader, const std::string& record) {
   mcap::StringMap values;
   for (const mcap::Metadata& one : reader.metadata()) {
     if (one.name == record) values.insert(one.values.begin(), one.values.end());
@@ -24,11 +24,11 @@ mcap::StringMap metadataOf(const mcap::Reader& reader, const std::string& record
   return values;
 }
 
-std::string metadataValue(const mcap::Reader& reader, const std::string& record, const std::string& key) {
+std::string metadataValue(const mcap::Source& reader, const std::string& record, const std::string& key) {
   return mcap::valueOf(metadataOf(reader, record), key);
 }
 
-bool hasTopic(const mcap::Reader& reader, const std::string& topic) {
+bool hasTopic(const mcap::Source& reader, const std::string& topic) {
   const auto& counts = reader.statistics().channel_message_counts;
   return std::ranges::any_of(reader.channels(), [&](const auto& entry) {
     const auto count = counts.find(entry.first);
@@ -36,7 +36,7 @@ bool hasTopic(const mcap::Reader& reader, const std::string& topic) {
   });
 }
 
-bool isLeftOut(const mcap::Reader& reader, const std::string& topic) {
+bool isLeftOut(const mcap::Source& reader, const std::string& topic) {
   auto text = attachmentText(reader, "certificate.json");
   if (!text) text = attachmentText(reader, "original_certificate.json");
   const nlohmann::json certificate = nlohmann::json::parse(text.value_or(""), nullptr, false);

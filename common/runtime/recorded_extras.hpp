@@ -4,24 +4,24 @@
 #include <optional>
 #include <string>
 
-#include "mcap/reader.hpp"
+#include "mcap/source.hpp"
 
 namespace baton {
 
 /// An attachment's text; nothing when there is none of that name. Throws FormatError when it is damaged.
-[[nodiscard]] std::optional<std::string> attachmentText(const mcap::Reader& reader, const std::string& name);
+[[nodiscard]] std::optional<std::string> attachmentText(const mcap::Source& reader, const std::string& name);
 
 /// A metadata record; of several with one name, the first value of each key. Empty when there is none.
-[[nodiscard]] mcap::StringMap metadataOf(const mcap::Reader& reader, const std::string& record);
+[[nodiscard]] mcap::StringMap metadataOf(const mcap::Source& reader, const std::string& record);
 
 /// A value of a metadata record; empty when there is no such record or key.
-[[nodiscard]] std::string metadataValue(const mcap::Reader& reader, const std::string& record, const std::string& key);
+[[nodiscard]] std::string metadataValue(const mcap::Source& reader, const std::string& record, const std::string& key);
 
 /// Whether a message of the topic is in the recording.
-[[nodiscard]] bool hasTopic(const mcap::Reader& reader, const std::string& topic);
+[[nodiscard]] bool hasTopic(const mcap::Source& reader, const std::string& topic);
 
 /// Whether the topic was left out of the recording on purpose: by its certificate, or by a copy that took only some
 /// topics of one that had it.
-[[nodiscard]] bool isLeftOut(const mcap::Reader& reader, const std::string& topic);
+[[nodiscard]] bool isLeftOut(const mcap::Source& reader, const std::string& topic);
 
 }  // namespace baton

@@ -9,7 +9,7 @@ namespace baton {
 namespace {
 
 /// For a recording without the topic that announces a reset: a take begins where the steps go back.
-Take lastTakeByStates(const mcap::Reader& reader) {
+Take lastTakeByStates(const mcap::Source& reader) {
   Take last;
   std::map<mcap::ChannelId, std::uint64_t> steps;
   forEachMessageOf(dds::topics::kPlantState, reader, 0, [&](const msg::PlantState& state, const auto& view) {
@@ -22,9 +22,9 @@ Take lastTakeByStates(const mcap::Reader& reader) {
 
 }  // namespace
 
-std::uint64_t lastTakeBegin(const mcap::Reader& reader) { return lastTake(reader).begin_ns; }
+std::uint64_t lastTakeBegin(const mcap::Source& reader) { return lastTake(reader).begin_ns; }
 
-Take lastTake(const mcap::Reader& reader) {
+Take lastTake(const mcap::Source& reader) {
   const char* topic = dds::topics::kRewind.name;
   if (!hasTopic(reader, topic) && isLeftOut(reader, topic)) return lastTakeByStates(reader);
   Take last;

@@ -1,9 +1,9 @@
-/// The take of a run that counts: of a run that was reset, what came after its last reset.
+/// The take of a run that counts: of a run that was reset, what was after its last reset.
 #pragma once
 
 #include <cstdint>
 
-#include "mcap/reader.hpp"
+#include "mcap/source.hpp"
 
 namespace baton {
 
@@ -14,8 +14,8 @@ struct Take {
   std::uint32_t number = 0;
   std::uint64_t begin_ns = 0;
 };
-[[nodiscard]] Take lastTake(const mcap::Reader& reader);
+[[nodiscard]] Take lastTake(const mcap::Source& reader);
 /// Where it begins.
-[[nodiscard]] std::uint64_t lastTakeBegin(const mcap::Reader& reader);
+[[nodiscard]] std::uint64_t lastTakeBegin(const mcap::Source& reader);
 
 }  // namespace baton
