@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "dds/history.hpp"
+
 namespace baton::dds {
 namespace {
 using namespace fastdds::dds;
@@ -49,6 +51,11 @@ void applyCommon(Profile profile, int depth, Qos& qos) {
   qos.endpoint().history_memory_policy = fastdds::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
 }
 }  // namespace
+
+std::size_t latchedDepth(Profile profile) {
+  const ProfileValues values = valuesOf(profile);
+  return values.durability == VOLATILE_DURABILITY_QOS ? 0 : static_cast<std::size_t>(values.writer_depth);
+}
 
 void applyProfile(Profile profile, DataWriterQos& qos) {
   applyCommon(profile, valuesOf(profile).writer_depth, qos);

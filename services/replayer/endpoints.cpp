@@ -1,54 +1,20 @@
 #include "endpoints.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <limits>
-#include <sstream>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "mcap/lookup.hpp"
+#include "runtime/recorded_qos.hpp"
 
 namespace baton {
 namespace {
 using mcap::valueOf;
 
-/// The recorded QoS, from lines of "name: value". "qos" is what eProsima's DDS Record & Replay keeps too, four truth
-/// values, and in our older recordings words; "qos_policies" has words, for all that is known of the writer.
-std::map<std::string, std::string> recordedQos(const mcap::StringMap& metadata) {
-  static const std::map<std::string, std::pair<const char*, const char*>> kWords{
-      {"reliability", {"reliable", "best_effort"}},
-      {"durability", {"transient_local", "volatile"}},
-      {"ownership", {"exclusive", "shared"}}};
-  std::map<std::string, std::string> values;
-  std::istringstream lines(valueOf(metadata, "qos") + "\n" + valueOf(metadata, "qos_policies"));
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t colon = line.find(": ");
-    if (colon == std::string::npos) continue;
-    std::string key = line.substr(0, colon), value = line.substr(colon + 2);
-    if (const auto words = kWords.find(key); words != kWords.end()) {
-      if (value == "true") value = words->second.first;
-      if (value == "false") value = words->second.second;
-    }
-    values[std::move(key)] = std::move(value);
-  }
-  return values;
-}
-
-/// 0 for what is not recorded, negative, or no number; the largest there is for what is beyond it.
-template <class Number>
-Number numberOf(const std::map<std::string, std::string>& values, const std::string& key) {
-  const std::string text = valueOf(values, key);
-  Number number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (end != text.data() + text.size() || text.starts_with('-')) return 0;
-  return error == std::errc::result_out_of_range ? std::numeric_limits<Number>::max() : number;
-}
-
 /// A promise to readers. What comes after less than this nobody keeps: a timer of DDS would only run out without end.
 std::int64_t promiseOf(const std::map<std::string, std::string>& qos, const std::string& key) {
   constexpr std::int64_t kShortest_ns = 100'000;
-  const auto promised_ns = numberOf<std::int64_t>(qos, key);
+  const auto promised_ns = recordedNumber<std::int64_t>(qos, key);
   return promised_ns == 0 ? 0 : std::max(promised_ns, kShortest_ns);
 }
 
@@ -95,7 +61,7 @@ dds::EndpointOptions replayEndpoint(const mcap::Channel& channel, const mcap::Sc
           .best_effort = valueOf(qos, "reliability") == "best_effort",
           .deadline_ns = promiseOf(qos, "deadline_ns"),
           .liveliness = livelinessOf(qos),
-          .ownership_strength = numberOf<std::uint32_t>(qos, "ownership_strength")};
+          .ownership_strength = recordedNumber<std::uint32_t>(qos, "ownership_strength")};
 }
 
 std::map<std::string, std::string> contradictions(const std::map<mcap::ChannelId, dds::EndpointOptions>& endpoints) {
