@@ -1,0 +1,143 @@
+/// Which files make one recording, and in which order.
+#include "runtime/recording_files.hpp"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "base/error.hpp"
+#include "mcap/writer.hpp"
+
+namespace baton {
+namespace {
+namespace fs = std::filesystem;
+
+class RecordingFiles : public testing::Test {
+ protected:
+  RecordingFiles() {
+    std::string name = (fs::temp_directory_path() / "baton-files-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    folder = name;
+  }
+  ~RecordingFiles() override { fs::remove_all(folder); }
+
+  struct Plan {
+    std::string run{};         // empty: not of Baton
+    std::string part{};        // its index
+    std::string first{"run"};  // the name of the first part
+    std::uint64_t begin_ns = 0;
+    std::uint64_t end_ns = 0;
+    std::string profile{};
+    bool is_cut_out = false;
+  };
+  std::string write(const std::string& name, const Plan& plan) const {
+    mcap::WriterOptions options;
+    options.profile = plan.profile;
+    mcap::Writer writer(folder / name, options);
+    if (!plan.run.empty()) writer.addMetadata("baton.run", {{"run", plan.run}, {"scenario", "s"}});
+    if (!plan.part.empty()) writer.addMetadata("baton.part", {{"index", plan.part}, {"first", plan.first}});
+    if (plan.is_cut_out) writer.addMetadata("baton.cut", {{"file", "x"}});
+    const mcap::ChannelId channel = writer.addChannel("t", "cdr", mcap::kNoSchema);
+    for (const std::uint64_t time : {plan.begin_ns, plan.end_ns}) writer.write(channel, 1, time, time, {});
+    writer.close();
+    return (folder / name).string();
+  }
+  /// Part `index` of a recording of 10 ns a part.
+  std::string writePart(const std::string& name, unsigned index, const std::string& run = "r") const {
+    return write(name,
+                 {.run = run, .part = std::to_string(index), .begin_ns = index * 10 + 1, .end_ns = index * 10 + 9});
+  }
+  static std::vector<std::string> names(const FoundRecording& found) {
+    std::vector<std::string> result;
+    for (const fs::path& path : found.files.paths()) result.push_back(path.filename().string());
+    return result;
+  }
+  static std::string refusal(const RecordingWish& wish) {
+    try {
+      (void)findRecording(wish);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  using Texts = std::vector<std::string>;
+  fs::path folder;
+};
+
+TEST_F(RecordingFiles, PartsComeInTheOrderOfTheirNumbersWhateverTheirNames) {
+  const Texts given{writePart("a.mcap", 2), writePart("z.mcap", 0), writePart("m.mcap", 1)};
+  const FoundRecording found = findRecording({.given = given});
+  EXPECT_EQ(names(found), (Texts{"z.mcap", "m.mcap", "a.mcap"}));
+  EXPECT_TRUE(found.missing.empty());
+}
+
+TEST_F(RecordingFiles, AFolderStandsForTheRecordingsInIt) {
+  writePart("b.mcap", 0);
+  writePart("a.mcap", 1);
+  std::ofstream(folder / "notes.txt") << "no recording";
+  EXPECT_EQ(names(findRecording({.given = {folder.string()}})), (Texts{"b.mcap", "a.mcap"}));
+  fs::create_directory(folder / "empty");
+  EXPECT_NE(refusal({.given = {(folder / "empty").string()}}).find("a folder with recordings"), std::string::npos);
+}
+
+TEST_F(RecordingFiles, OtherPartsAreFoundWhenAskedForByWhatTheySay) {
+  const std::string middle = writePart("middle.mcap", 1);
+  writePart("renamed.mcap", 0);
+  writePart("run_0002.mcap", 2);
+  writePart("run_0003.mcap", 3, "another");
+  write("of_another_recording.mcap", {.run = "r", .part = "3", .first = "second"});
+  write("cut_out.mcap", {.run = "r", .part = "3", .is_cut_out = true});
+  std::ofstream(folder / "broken.mcap") << "no recording";
+  EXPECT_EQ(names(findRecording({.given = {middle}})), (Texts{"middle.mcap"}));
+  EXPECT_EQ(names(findRecording({.given = {middle}, .with_parts = true})),
+            (Texts{"renamed.mcap", "middle.mcap", "run_0002.mcap"}));
+}
+
+TEST_F(RecordingFiles, AMissingPartIsNamedAndMakesTheExitCode) {
+  const Texts given{writePart("a.mcap", 1), writePart("b.mcap", 3), writePart("c.mcap", 6)};
+  const FoundRecording found = findRecording({.given = given});
+  ASSERT_EQ(found.missing.size(), 2U);
+  EXPECT_EQ(found.missing[0], "part 2 is missing between " + given[0] + " and " + given[1]);
+  EXPECT_EQ(found.missing[1], "parts 4 to 5 are missing between " + given[1] + " and " + given[2]);
+  ExitCode exit_code = ExitCode::kOk;
+  EXPECT_EQ(findRecording({.given = given}, exit_code).paths().size(), 3U);
+  EXPECT_EQ(exit_code, ExitCode::kFailed);
+  exit_code = ExitCode::kOk;
+  (void)findRecording({.given = {given[0]}}, exit_code);
+  EXPECT_EQ(exit_code, ExitCode::kOk) << "a part alone is read as ever";
+}
+
+TEST_F(RecordingFiles, FilesOfSeveralRunsAreRefusedWithWhatDiffers) {
+  const std::string a = writePart("a.mcap", 0), b = writePart("b.mcap", 1, "other");
+  EXPECT_NE(refusal({.given = {a, b}}).find("of different runs: run r and other"), std::string::npos)
+      << refusal({.given = {a, b}});
+  const std::string foreign = write("c.mcap", {});
+  EXPECT_NE(refusal({.given = {a, foreign}}).find("c.mcap was not recorded by Baton"), std::string::npos);
+  const std::string ros = write("d.mcap", {.profile = "ros2"});
+  EXPECT_NE(refusal({.given = {foreign, ros}}).find("profile '' and 'ros2'"), std::string::npos);
+}
+
+TEST_F(RecordingFiles, NothingIsReadTwice) {
+  const std::string a = writePart("a.mcap", 0);
+  EXPECT_NE(refusal({.given = {a, a}}).find("the same file"), std::string::npos);
+  EXPECT_NE(refusal({.given = {a, writePart("copy.mcap", 0)}}).find("both part 0"), std::string::npos);
+  const std::string one = write("one.mcap", {.run = "r", .begin_ns = 0, .end_ns = 2'000'000'000});
+  const std::string two = write("two.mcap", {.run = "r", .begin_ns = 1'500'000'000, .end_ns = 3'000'000'000});
+  EXPECT_NE(refusal({.given = {two, one}}).find("which overlap by 0.500 s"), std::string::npos);
+}
+
+TEST_F(RecordingFiles, WhatHasNoNumbersComesByItsTimes) {
+  const std::string late = write("a.mcap", {.run = "r", .begin_ns = 50, .end_ns = 60});
+  const std::string early = write("b.mcap", {.run = "r", .begin_ns = 10, .end_ns = 50, .is_cut_out = true});
+  EXPECT_EQ(names(findRecording({.given = {late, early}})), (Texts{"b.mcap", "a.mcap"}));
+  const std::string x = write("x.mcap", {.begin_ns = 20, .end_ns = 40});
+  const std::string y = write("y.mcap", {.begin_ns = 10, .end_ns = 30});
+  EXPECT_EQ(names(findRecording({.given = {x, y}})), (Texts{"y.mcap", "x.mcap"})) << "other people's may overlap";
+}
+
+}  // namespace
+}  // namespace baton
