@@ -4,6 +4,7 @@
 #include <span>
 
 #include "dds/hash.hpp"
+#include "mcap/repeated.hpp"
 #include "msg/idl_text.hpp"
 #include "runtime/recording_parts.hpp"
 
@@ -40,11 +41,12 @@ void attach(const Attachment& attachment, mcap::Writer& file) {
 }  // namespace
 
 Recording::Recording(std::filesystem::path path, const RecordingConfig& config, const Origin& origin,
-                     std::uint64_t elapsed, std::uint64_t from_step)
+                     std::uint64_t elapsed, std::uint64_t from_step, const Latched* latched)
     : path_(std::move(path)),
       config_(config),
       origin_(origin),
       file_(openPart(0, from_step)),
+      latched_(latched),
       part_elapsed_(elapsed),
       from_step_(from_step) {
   parts_.push_back({.path = path_, .from_step = from_step, .shares = {}});
@@ -79,15 +81,12 @@ std::unique_ptr<mcap::Writer> Recording::openFile(const std::filesystem::path& p
 }
 
 void Recording::write(const Stream& stream, const Sample& sample) {
-  if (stream.index >= written_.size()) written_.resize(stream.index + 1);
-  Written& written = written_[stream.index];
+  if (!std::exchange(has_begun_, true)) repeat(sample.log_time_ns);
+  Written& written = writtenOf(stream);
   RecordedStream& recorded = written.recorded;
   const bool is_first = recorded.count == written.dropped;
   if (!is_first) recorded.missing += sample.lost_before;
-  if (written.channel == mcap::ChannelId{}) {
-    written.stream = &stream;
-    openChannel(written, sample);
-  }
+  if (!written.is_here) begin(written, stream, sample);
   file_->write(written.channel, static_cast<std::uint32_t>(sample.sequence),
                static_cast<std::uint64_t>(sample.log_time_ns), static_cast<std::uint64_t>(sample.source_timestamp_ns),
                sample.payload);
@@ -101,9 +100,37 @@ void Recording::write(const Stream& stream, const Sample& sample) {
   ++messages_;
 }
 
-void Recording::openChannel(Written& written, const Sample& sample) {
-  const Stream& stream = *written.stream;
+Recording::Written& Recording::writtenOf(const Stream& stream) {
+  if (stream.index >= written_.size()) written_.resize(stream.index + 1);
+  return written_[stream.index];
+}
+
+void Recording::openChannel(Written& written, const Stream& stream) {
+  if (written.channel != mcap::ChannelId{}) return;
   written.channel = file_->addChannel(stream.topic(), "cdr", addSchemaOf(stream.type, *file_), stream.metadata);
+}
+
+/// What a late joiner would be given now: the part alone says how things stood when it began.
+void Recording::repeat(std::int64_t log_time_ns) {
+  repeated_ = {};
+  if (latched_ == nullptr || latched_->size() == 0) return;
+  file_->addMetadata(mcap::kRepeatedRecord, mcap::repeatedRecord(latched_->size()));
+  latched_->forEach([&](const Latched::Sample& sample) {
+    Written& written = writtenOf(*sample.head.stream);
+    openChannel(written, *sample.head.stream);
+    file_->write(written.channel, static_cast<std::uint32_t>(sample.head.sequence),
+                 static_cast<std::uint64_t>(log_time_ns), static_cast<std::uint64_t>(sample.head.source_timestamp_ns),
+                 sample.bytes);
+  });
+  file_->flush();
+  repeated_ = file_->statistics();
+}
+
+/// The first sample of a stream in this part.
+void Recording::begin(Written& written, const Stream& stream, const Sample& sample) {
+  written.is_here = true;
+  written.stream = &stream;
+  openChannel(written, stream);
   if (!config_.drops_oldest) return;
   parts_.back().shares.push_back({.stream = stream.index,
                                   .first_sequence = sample.sequence,
@@ -113,9 +140,10 @@ void Recording::openChannel(Written& written, const Sample& sample) {
 }
 
 void Recording::splitWhenFull(std::uint64_t elapsed, std::uint64_t step) {
-  // What a part begins with, scenario and robot, fills none.
+  // What a part begins with, scenario, robot and what it repeats, fills none.
   const mcap::WriterStatistics so_far = file_->statistics();
-  if (!isPartFull(config_, so_far.chunks > 0 ? so_far.file_bytes : 0, elapsed - part_elapsed_)) return;
+  const std::uint64_t bytes = so_far.chunks > repeated_.chunks ? so_far.file_bytes - repeated_.file_bytes : 0;
+  if (!isPartFull(config_, bytes, elapsed - part_elapsed_)) return;
   // The next one first: without it this one goes on.
   std::unique_ptr<mcap::Writer> next = openPart(index_ + 1, step);
   try {
@@ -130,7 +158,12 @@ void Recording::splitWhenFull(std::uint64_t elapsed, std::uint64_t step) {
   ++index_;
   parts_.push_back({.path = partOf(path_, index_), .from_step = step, .messages_before = messages_, .shares = {}});
   part_elapsed_ = elapsed;
-  for (Written& written : written_) written.channel = {};
+  for (Written& written : written_) {
+    written.channel = {};
+    written.is_here = false;
+  }
+  has_begun_ = false;
+  repeated_ = {};
 }
 
 void Recording::closeFile() {

@@ -14,6 +14,7 @@
 
 #include "certificate.hpp"
 #include "mcap/writer.hpp"
+#include "runtime/latched.hpp"
 #include "storage_policy.hpp"
 
 namespace baton {
@@ -30,12 +31,23 @@ struct Origin {
   std::vector<Attachment> attachments;
 };
 
+/// A sample that late joiners would be given, as a file that begins in the middle repeats it.
+struct LatchedHead {
+  const Stream* stream = nullptr;
+  std::uint64_t sequence = 0;
+  std::int64_t source_timestamp_ns = 0;
+};
+using Latched = LatchedSamples<LatchedHead>;
+/// Payloads of those that a recording's files may begin with.
+inline constexpr std::size_t kMostLatchedBytes = std::size_t{16} << 20;
+
 class Recording {
  public:
-  /// Creates the first part. `config` and `origin` outlive the recording. Throws UnavailableError when the file is
-  /// there already or cannot be created.
+  /// Creates the first part. `config`, `origin` and `latched` outlive the recording. Each part begins with
+  /// what there is in `latched`, with the log time of its first sample: these are not in its accounts. Throws
+  /// UnavailableError when the file is there already or cannot be created.
   Recording(std::filesystem::path path, const RecordingConfig& config, const Origin& origin, std::uint64_t elapsed,
-            std::uint64_t from_step);
+            std::uint64_t from_step, const Latched* latched = nullptr);
 
   struct Sample {
     std::uint64_t sequence = 0;
@@ -101,6 +113,7 @@ class Recording {
     const Stream* stream = nullptr;
     RecordedStream recorded;
     mcap::ChannelId channel{};  // in this part; 0: none yet
+    bool is_here = false;       // a sample is in this part, not only what it repeats
     std::uint64_t dropped = 0;  // of the count, in parts that are gone
     std::uint64_t dropped_missing = 0;
   };
@@ -108,7 +121,10 @@ class Recording {
   [[nodiscard]] std::unique_ptr<mcap::Writer> openPart(unsigned index, std::uint64_t from_step) const;
   [[nodiscard]] std::unique_ptr<mcap::Writer> openFile(const std::filesystem::path& path, unsigned index,
                                                        std::uint64_t from_step) const;
-  void openChannel(Written& written, const Sample& sample);
+  [[nodiscard]] Written& writtenOf(const Stream& stream);
+  void begin(Written& written, const Stream& stream, const Sample& sample);
+  void openChannel(Written& written, const Stream& stream);
+  void repeat(std::int64_t log_time_ns);
   void closeFile();
 
   std::filesystem::path path_;
@@ -121,7 +137,10 @@ class Recording {
   std::optional<Hole> dropped_;   // where the oldest parts were
   std::uint64_t messages_ = 0;
   std::uint64_t closed_bytes_ = 0;
-  std::uint64_t part_elapsed_ = 0;  // of the run, when the part began
+  const Latched* latched_;
+  bool has_begun_ = false;           // this part
+  mcap::WriterStatistics repeated_;  // how it stood when it had repeated all
+  std::uint64_t part_elapsed_ = 0;   // of the run, when the part began
   std::uint64_t from_step_ = 0;
 };
 

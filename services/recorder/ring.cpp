@@ -15,7 +15,8 @@ Ring::Ring(std::uint64_t steps, std::size_t max_bytes)
     : steps_(steps),
       capacity_(max_bytes - max_bytes / kOlderShare),
       memory_(new std::byte[capacity_]),  // not make_unique, which would touch all of it
-      end_(capacity_) {}
+      end_(capacity_),
+      older_(max_bytes / kOlderShare) {}
 
 std::size_t Ring::sizeOf(const Sample& sample) {
   const std::size_t bytes = sizeof(Sample) + sample.payload.size();
@@ -55,7 +56,7 @@ bool Ring::push(const Sample& sample) {
 
 void Ring::popOldest() {
   const Sample sample = sampleAt(first_);
-  if (sample.lasting != Lasting::kNo) keep(sample);
+  older_.keep(sample.stream, "", sample.latched, sample, sample.payload);
   const std::size_t size = sizeOf(sample);
   first_ += size;
   --count_;
@@ -66,35 +67,7 @@ void Ring::popOldest() {
   }
 }
 
-void Ring::keep(const Sample& sample) {
-  Kept kept{sample, {sample.payload.begin(), sample.payload.end()}};
-  if (sample.lasting == Lasting::kLatest) {
-    Kept& known = latest_[sample.stream];
-    older_bytes_ += kept.bytes.size();
-    older_bytes_ -= known.bytes.size();
-    known = std::move(kept);
-    return;
-  }
-  older_bytes_ += kept.bytes.size();
-  older_.push_back(std::move(kept));
-  const std::size_t most = capacity_ / (kOlderShare - 1);
-  while (older_bytes_ > most && !older_.empty()) {
-    older_bytes_ -= older_.front().bytes.size();
-    older_.pop_front();
-  }
-}
-
 void Ring::forEach(const std::function<void(const Sample&)>& callback) const {
-  std::vector<const Kept*> older;
-  for (const Kept& one : older_) older.push_back(&one);
-  for (const auto& [stream, one] : latest_) older.push_back(&one);
-  std::stable_sort(older.begin(), older.end(),
-                   [](const Kept* a, const Kept* b) { return a->sample.log_time_ns < b->sample.log_time_ns; });
-  for (const Kept* one : older) {
-    Sample sample = one->sample;
-    sample.payload = one->bytes;
-    callback(sample);
-  }
   std::size_t at = first_;
   for (std::size_t i = 0; i < count_; ++i) {
     const Sample sample = sampleAt(at);
@@ -109,10 +82,9 @@ std::optional<std::uint64_t> Ring::firstStep() const {
 }
 
 void Ring::clear() {
-  first_ = next_ = count_ = used_ = older_bytes_ = 0;
+  first_ = next_ = count_ = used_ = 0;
   end_ = capacity_;
   older_.clear();
-  latest_.clear();
 }
 
 }  // namespace baton

@@ -1,25 +1,22 @@
-/// The latest samples of a run, in memory: those of the last so many steps and no more than so many bytes. Of topics
-/// that late joiners are told of (events, the latest status of each writer) what has become older is kept as well: it
+/// The latest samples of a run, in memory: those of the last so many steps and no more than so many bytes. What has
+/// become older is kept as well where late joiners would be given it (events, the latest status of each writer): it
 /// says what was decided before, and how things stood. Nothing is allocated for a sample; of the memory, only what has
 /// been used once is taken from the system.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
-#include <vector>
+
+#include "runtime/latched.hpp"
 
 namespace baton {
 
 class Ring {
  public:
-  /// What becomes of a sample that has grown old.
-  enum class Lasting : std::uint8_t { kNo, kLatest, kAll };
   struct Sample {
     std::size_t stream = 0;
     std::uint64_t sequence = 0;
@@ -27,7 +24,7 @@ class Ring {
     std::int64_t source_timestamp_ns = 0;
     std::uint64_t step = 0;         // of the run, when it came
     std::uint64_t lost_before = 0;  // samples of its writer that should have come between the one before and this
-    Lasting lasting = Lasting::kNo;
+    std::size_t latched = 0;        // how many of its writer's samples are kept when they have grown old
     std::span<const std::byte> payload;
   };
 
@@ -36,23 +33,19 @@ class Ring {
   /// What is older than `steps` before this sample goes, and more when there is no room. A sample larger than the whole
   /// ring is not kept; returns false then.
   bool push(const Sample& sample);
-  /// All samples, oldest first: log times never decrease.
+  /// All samples that are not older than the ring, oldest first: log times never decrease.
   void forEach(const std::function<void(const Sample&)>& callback) const;
+  /// Those that are older and kept. Their bytes lie next to them, not in `payload`.
+  [[nodiscard]] const LatchedSamples<Sample>& older() const { return older_; }
   void clear();
 
   /// When the first one of those came that are not older than the ring; nothing when there is none.
   [[nodiscard]] std::optional<std::uint64_t> firstStep() const;
-  [[nodiscard]] std::size_t samples() const { return count_ + older_.size() + latest_.size(); }
-  [[nodiscard]] std::size_t bytes() const { return used_ + older_bytes_; }
+  [[nodiscard]] std::size_t samples() const { return count_ + older_.size(); }
+  [[nodiscard]] std::size_t bytes() const { return used_ + older_.bytes(); }
 
  private:
-  struct Kept {
-    Sample sample;  // its payload lies in `bytes`
-    std::vector<std::byte> bytes;
-  };
-
   void popOldest();
-  void keep(const Sample& sample);
   [[nodiscard]] Sample sampleAt(std::size_t offset) const;
   [[nodiscard]] static std::size_t sizeOf(const Sample& sample);
 
@@ -66,9 +59,7 @@ class Ring {
   std::size_t end_ = 0;
   std::size_t count_ = 0;
   std::size_t used_ = 0;
-  std::deque<Kept> older_;
-  std::map<std::size_t, Kept> latest_;  // by stream
-  std::size_t older_bytes_ = 0;
+  LatchedSamples<Sample> older_;
 };
 
 }  // namespace baton

@@ -118,7 +118,7 @@ Stream& RecordingSession::streamOf(std::uint32_t topic, const dds::Guid& writer)
   stream.is_manifest = facts.topic == dds::topics::kServiceManifest.name;
   stream.is_booked = facts.is_recorded || stream.is_manifest || facts.topic == dds::topics::kServiceStatus.name;
   stream.is_status = dds::isStatusTopic(facts.topic);
-  stream.lasts = facts.lasts;
+  stream.latched = facts.lasts ? latchedDepth(facts.topic, stream.metadata) : 0;
   if (!facts.is_recorded) ledger_.leaveOut(facts.topic);
   return stream;
 }
@@ -127,30 +127,32 @@ void RecordingSession::keep(const Stream& stream, const SampleQueue::Entry& entr
                             std::uint64_t lost_before) {
   if (holes_.isOpen() && !stream.is_manifest) return holes_.leaveOut();
   if (ring_) {
-    const Ring::Lasting lasting = !stream.lasts      ? Ring::Lasting::kNo
-                                  : stream.is_status ? Ring::Lasting::kLatest
-                                                     : Ring::Lasting::kAll;
     ring_->push({.stream = stream.index,
                  .sequence = entry.sequence,
                  .log_time_ns = entry.log_time_ns,
                  .source_timestamp_ns = entry.source_timestamp_ns,
                  .step = credit_.elapsedSteps(),
                  .lost_before = lost_before,
-                 .lasting = lasting,
+                 .latched = stream.latched,
                  .payload = payload});
     return;
   }
   if (is_limited_) makeRoom();
-  if (!recording_) return;
   try {
-    recording_->write(stream, {.sequence = entry.sequence,
-                               .log_time_ns = entry.log_time_ns,
-                               .source_timestamp_ns = entry.source_timestamp_ns,
-                               .lost_before = lost_before,
-                               .payload = payload});
+    if (recording_) {
+      recording_->write(stream, {.sequence = entry.sequence,
+                                 .log_time_ns = entry.log_time_ns,
+                                 .source_timestamp_ns = entry.source_timestamp_ns,
+                                 .lost_before = lost_before,
+                                 .payload = payload});
+    }
   } catch (const std::exception& error) {
     fail(error.what());
   }
+  // For the files that begin later.
+  latched_.keep(stream.index, "", stream.latched,
+                {.stream = &stream, .sequence = entry.sequence, .source_timestamp_ns = entry.source_timestamp_ns},
+                payload);
 }
 
 void RecordingSession::learn(const Stream& stream, std::span<const std::byte> payload) {
@@ -238,7 +240,8 @@ void RecordingSession::start(const std::string& path) {
       throw UnavailableError(others.front().string() + " is there already, and would be a part of it");
     }
   }
-  recording_ = std::make_unique<Recording>(path, config_, origin_, credit_.elapsedSteps(), credit_.stateStep());
+  recording_ =
+      std::make_unique<Recording>(path, config_, origin_, credit_.elapsedSteps(), credit_.stateStep(), &latched_);
   holes_.clear();
   begun_at_ = credit_.elapsedSteps();
   path_ = path;

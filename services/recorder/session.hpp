@@ -81,6 +81,7 @@ class RecordingSession {
   RunNotes notes_;
   Holes holes_;
   std::map<std::pair<std::uint32_t, dds::Guid>, Stream> streams_;
+  Latched latched_{kMostLatchedBytes};
   std::unique_ptr<Recording> recording_;
   std::unique_ptr<Ring> ring_;
   std::string path_;            // of the latest recording

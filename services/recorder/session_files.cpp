@@ -102,10 +102,18 @@ std::string RecordingSession::close(Recording& recording, std::uint64_t begun_at
 std::string RecordingSession::writeRing(const std::string& path, const Ending& ending) {
   const std::uint64_t span = credit_.elapsedSteps() - ring_->firstStep().value_or(credit_.elapsedSteps());
   const std::uint64_t from_step = credit_.stateStep() - std::min(span, credit_.stateStep());
-  Recording recording(path, config_, origin_, credit_.elapsedSteps(), from_step);
-  const Tally tally{recording, finished_messages_, finished_bytes_};
   std::vector<const Stream*> streams(streams_.size());
   for (const auto& [key, stream] : streams_) streams[stream.index] = &stream;
+  Latched older(std::numeric_limits<std::size_t>::max());
+  ring_->older().forEach([&](const auto& sample) {
+    const Ring::Sample& head = sample.head;
+    older.keep(
+        head.stream, "", head.latched,
+        {.stream = streams[head.stream], .sequence = head.sequence, .source_timestamp_ns = head.source_timestamp_ns},
+        sample.bytes);
+  });
+  Recording recording(path, config_, origin_, credit_.elapsedSteps(), from_step, &older);
+  const Tally tally{recording, finished_messages_, finished_bytes_};
   ring_->forEach([&](const Ring::Sample& sample) {
     recording.write(*streams[sample.stream], {.sequence = sample.sequence,
                                               .log_time_ns = sample.log_time_ns,

@@ -29,7 +29,7 @@ struct Stream {
   std::uint64_t missing_so_far = 0;  // when its latest sample came
   std::uint64_t noticed = 0;         // of what is missing
   std::uint64_t lost_at = 0;         // steps of the run, when it was noticed last that samples never came
-  bool lasts = false;                // late joiners are told of what was before
+  std::size_t latched = 0;           // how many of its latest samples late joiners are given
 
   [[nodiscard]] const std::string& topic() const { return received->first.first; }
   [[nodiscard]] const dds::Guid& writer() const { return received->first.second; }

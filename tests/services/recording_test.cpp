@@ -12,6 +12,7 @@
 
 #include "dds/hash.hpp"
 #include "mcap/reader.hpp"
+#include "mcap/repeated.hpp"
 #include "runtime/recording_parts.hpp"
 #include "runtime/yaml.hpp"
 #include "support/allocation_guard.hpp"
@@ -45,7 +46,7 @@ class RecordingTest : public testing::Test {
         test::shortContact("recording: {compression: none, chunk_kB: 10, min_free_MB: 0" + recording + "}\n");
     const std::string robot = readYamlFile((test::deployFolder() / "robots/rpp.yaml").string());
     config_ = parseScenario("test.yaml", text, "rpp.yaml", robot).recording;
-    recording_ = std::make_unique<Recording>(file(), config_, origin_, 0, 0);
+    recording_ = std::make_unique<Recording>(file(), config_, origin_, 0, 0, &latched_);
   }
   Stream& stream(std::size_t index, const std::string& type = "baton::msg::PlantState") {
     Stream& stream = streams_[index];
@@ -68,6 +69,7 @@ class RecordingTest : public testing::Test {
                            .log_time_ns = static_cast<std::int64_t>(sent_),
                            .source_timestamp_ns = static_cast<std::int64_t>(sent_),
                            .payload = payload});
+    latched_.keep(index, "", depths_[index], {.stream = &to, .sequence = sequence, .source_timestamp_ns = 7}, payload);
   }
   Json finish(const Ending& ending = {.run_is_over = false}, const std::vector<Hole>& holes = {}) {
     Certificate certificate(ledger_, ending);
@@ -89,6 +91,8 @@ class RecordingTest : public testing::Test {
                                  {"robot.yaml", "application/yaml", "name: rpp"}}};
   Ledger ledger_{{}};
   std::map<std::size_t, Stream> streams_;
+  std::map<std::size_t, std::size_t> depths_;  // of what late joiners are given, by stream
+  Latched latched_{kMostLatchedBytes};
   std::unique_ptr<Recording> recording_;
   std::uint64_t sent_ = 0;
 };
@@ -110,7 +114,9 @@ std::map<std::string, Sums> sumsOf(const std::vector<fs::path>& files, const Jso
   for (const fs::path& file : files) {
     const mcap::Reader reader(file);
     EXPECT_TRUE(reader.info().is_complete) << file;
+    mcap::Repeated repeated(reader);  // counts where it was recorded
     reader.forEachMessage({}, [&](const mcap::MessageView& message) {
+      if (repeated.takes(message)) return;
       Sums& of = sums[message.channel->topic];
       if (of.count > 0) {
         EXPECT_EQ(message.sequence, of.last + 1) << file;
@@ -254,6 +260,55 @@ TEST_F(RecordingTest, WhereTheOldestPartsHaveGoneTheAccountIsOfTheRest) {
   std::uint64_t held = 0;
   for (const Json& row : certificate.at("streams")) held += row.at("count").get<std::uint64_t>();
   EXPECT_EQ(certificate.at("holes").at(0).at("samples").get<std::uint64_t>() + held, 902u);
+}
+
+TEST_F(RecordingTest, APartThatBeginsInTheMiddleBeginsWithWhatALateJoinerWouldBeGiven) {
+  depths_ = {{0, 1}, {1, 3}};
+  open(", split_s: 0.01");  // twenty steps
+  for (std::uint64_t step = 0; step < 60; ++step) {
+    recording_->splitWhenFull(step, step);
+    write(step % 4);
+  }
+  const Json certificate = finish();
+  ASSERT_EQ(parts().size(), 3u);
+  expectAccount(parts(), certificate);
+  EXPECT_FALSE(metadataOf(parts()[0]).contains(mcap::kRepeatedRecord)) << "nothing was before it";
+  for (std::size_t i = 1; i < 3; ++i) {
+    const mcap::Reader reader(parts()[i]);
+    std::vector<std::pair<std::string, std::uint32_t>> first;
+    reader.forEachMessage({}, [&](const mcap::MessageView& message) {
+      if (first.size() == 4) return;
+      EXPECT_EQ(message.log_time_ns, i * 20 + 1) << "that of the first sample of the part";
+      EXPECT_EQ(message.publish_time_ns, 7u);
+      first.emplace_back(message.channel->topic, message.sequence);
+    });
+    const auto n = static_cast<std::uint32_t>(i * 5);  // of each stream, so far
+    EXPECT_EQ(first, (std::vector<std::pair<std::string, std::uint32_t>>{
+                         {"topic1", n - 2}, {"topic1", n - 1}, {"topic0", n}, {"topic1", n}}));
+    EXPECT_EQ(mcap::Repeated(reader).count(), 4u);
+    EXPECT_EQ(reader.statistics().message_count, 24u);
+  }
+}
+
+TEST_F(RecordingTest, WhatIsRepeatedFillsNoPartAndIsInNoAccountWhereTheOldestGo) {
+  depths_ = {{0, 1000}};
+  open(", split_MB: 0.02, max_MB: 0.6, when_full: drop_oldest");
+  for (int i = 0; i < 600; ++i) {
+    recording_->splitWhenFull(0, static_cast<std::uint64_t>(i));
+    while (judgeStorage(config_, recording_->storage()) == StorageVerdict::kDropOldest) {
+      recording_->dropOldestPart();
+    }
+    write(i % 5 == 0 ? 0 : 1);
+  }
+  const Json certificate = finish();
+  const std::vector<fs::path> files = furtherPartsOf(file());
+  ASSERT_GE(files.size(), 2u);
+  EXPECT_FALSE(fs::exists(file()));
+  expectAccount(files, certificate);
+  for (std::size_t i = 0; i + 1 < files.size(); ++i) {
+    const mcap::Reader reader(files[i]);
+    EXPECT_GE(reader.statistics().message_count - mcap::Repeated(reader).count(), 10u) << "a chunk at least";
+  }
 }
 
 TEST_F(RecordingTest, APartThatCannotBeClosedIsTheLast) {

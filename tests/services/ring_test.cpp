@@ -13,6 +13,7 @@ namespace baton {
 namespace {
 
 constexpr std::size_t kPlenty = 1 << 20;
+constexpr std::size_t kAll = 1'000'000;
 
 struct Held {
   std::size_t stream;
@@ -28,19 +29,22 @@ std::vector<std::byte> payloadOf(std::uint64_t sequence, std::size_t size) {
 struct Fed {
   Fed(std::uint64_t steps, std::size_t bytes) : ring(steps, bytes) {}
 
-  bool push(std::uint64_t step, std::size_t stream = 0, std::size_t size = 100,
-            Ring::Lasting lasting = Ring::Lasting::kNo) {
+  bool push(std::uint64_t step, std::size_t stream = 0, std::size_t size = 100, std::size_t latched = 0) {
     const std::vector<std::byte> payload = payloadOf(++sequence, size);
     return ring.push({.stream = stream,
                       .sequence = sequence,
                       .log_time_ns = static_cast<std::int64_t>(sequence),
                       .step = step,
-                      .lasting = lasting,
+                      .latched = latched,
                       .payload = payload});
   }
   [[nodiscard]] std::vector<Held> held() const {
     std::vector<Held> result;
     std::int64_t last = 0;
+    ring.older().forEach([&](const auto& sample) {
+      result.push_back({sample.head.stream, sample.head.sequence, sample.bytes});
+      last = std::max(last, sample.head.log_time_ns);
+    });
     ring.forEach([&](const Ring::Sample& sample) {
       EXPECT_GE(sample.log_time_ns, last);
       last = sample.log_time_ns;
@@ -101,26 +105,26 @@ TEST(Ring, WhatIsLargerThanTheRingIsNotKept) {
 
 TEST(Ring, EventsLastAndOfAStatusTheLatestOfEachWriter) {
   Fed fed(2, kPlenty);
-  fed.push(0, 1, 10, Ring::Lasting::kAll);     // 1
-  fed.push(0, 2, 10, Ring::Lasting::kLatest);  // 2
-  fed.push(1, 2, 10, Ring::Lasting::kLatest);  // 3
-  fed.push(1, 3, 10, Ring::Lasting::kLatest);  // 4
-  fed.push(2, 1, 10, Ring::Lasting::kAll);     // 5
-  fed.push(2);                                 // 6
+  fed.push(0, 1, 10, kAll);  // 1
+  fed.push(0, 2, 10, 1);     // 2
+  fed.push(1, 2, 10, 1);     // 3
+  fed.push(1, 3, 10, 1);     // 4
+  fed.push(2, 1, 10, kAll);  // 5
+  fed.push(2);               // 6
   for (std::uint64_t step = 10; step < 13; ++step) fed.push(step);
   EXPECT_EQ(fed.sequences(), (std::vector<std::uint64_t>{1, 3, 4, 5, 7, 8, 9}));
 }
 
 TEST(Ring, EventsThatNeverEndGiveWayToo) {
   Fed fed(1, 8000);
-  for (std::uint64_t step = 0; step < 1000; ++step) fed.push(step, 1, 100, Ring::Lasting::kAll);
+  for (std::uint64_t step = 0; step < 1000; ++step) fed.push(step, 1, 100, kAll);
   EXPECT_LE(fed.ring.bytes(), 8000u);
   EXPECT_EQ(fed.sequences().back(), 1000u);
 }
 
 TEST(Ring, IsEmptyWhenCleared) {
   Fed fed(5, kPlenty);
-  fed.push(1, 1, 10, Ring::Lasting::kAll);
+  fed.push(1, 1, 10, kAll);
   fed.push(10);
   fed.ring.clear();
   EXPECT_EQ(fed.ring.samples(), 0u);
