@@ -46,8 +46,8 @@ JoinedReader::JoinedReader(const FileList& files, DamageSink on_damage) {
   for (const std::filesystem::path& path : files.paths()) {
     ReaderOptions options;
     if (on_damage) {
-      options.on_damage = [on_damage, path, told = std::make_shared<std::set<std::uint64_t>>()](const Damage& damage) {
-        if (told->insert(damage.offset).second) on_damage(path, damage);
+      options.on_damage = [on_damage, path, told = std::make_shared<std::set<Damage>>()](const Damage& damage) {
+        if (told->insert(damage).second) on_damage(path, damage);
       };
     }
     parts_.push_back({.reader = std::make_unique<Reader>(path, options), .routes = {}, .repeated = {}});
@@ -62,7 +62,11 @@ void JoinedReader::join(const FileList& files) {
     Part& part = parts_[i];
     const FileInfo& info = part.reader->info();
     if (info_.problem.empty() && !info.problem.empty()) info_.problem = files.paths()[i].string() + ": " + info.problem;
+    for (const std::string& text : info.contradictions) {
+      info_.contradictions.push_back(files.paths()[i].string() + ": " + text);
+    }
     info_.file_bytes += info.file_bytes;
+    info_.trailing_bytes += info.trailing_bytes;
     info_.complete_bytes += info.complete_bytes;
     info_.is_complete = info_.is_complete && info.is_complete;
     info_.has_all_data = info_.has_all_data && info.has_all_data;

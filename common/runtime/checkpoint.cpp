@@ -14,9 +14,9 @@ constexpr const char* kTopic = dds::topics::kCheckpoint.name;
 
 }  // namespace
 
-CheckpointSet newestCheckpoint(const std::filesystem::path& recording, std::uint64_t begin_ns, std::uint64_t at_step,
+CheckpointSet newestCheckpoint(const mcap::FileList& recording, std::uint64_t begin_ns, std::uint64_t at_step,
                                const std::vector<std::string>& services) {
-  const mcap::Reader reader(recording);
+  const mcap::JoinedReader reader(recording);
   std::map<std::uint64_t, std::set<std::string>> parts;  // whose, by step
   const auto counts = [&](const msg::Checkpoint& one) {
     return one.step() <= at_step && std::find(services.begin(), services.end(), one.name().c_str()) != services.end();

@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/state_archive.hpp"
+#include "mcap/joined_reader.hpp"
 #include "runtime/service.hpp"
 
 namespace baton {
@@ -24,7 +25,7 @@ struct CheckpointSet {
 /// The newest step up to `at_step` of which the recording has the checkpoints of all `services`, from a log time on (a
 /// run that was reset begins anew in the middle of its file); step 0 without states when there is none: a run's
 /// beginning needs no checkpoint. Throws what reading a recording throws.
-[[nodiscard]] CheckpointSet newestCheckpoint(const std::filesystem::path& recording, std::uint64_t begin_ns,
+[[nodiscard]] CheckpointSet newestCheckpoint(const mcap::FileList& recording, std::uint64_t begin_ns,
                                              std::uint64_t at_step, const std::vector<std::string>& services);
 
 /// One set as a file of its own (MCAP), which the services of a branch read. Throws UnavailableError.

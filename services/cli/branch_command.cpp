@@ -19,6 +19,7 @@
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/recorded_messages.hpp"
+#include "runtime/recording_files.hpp"
 #include "runtime/scenario_edit.hpp"
 #include "runtime/service_options.hpp"
 
@@ -27,7 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct BranchRequest {
-  std::string recording;
+  RecordingWish recording;
+  mcap::FileList files;  // found
   std::optional<std::uint64_t> at_step;
   std::optional<double> at_s;
   std::string swap;
@@ -53,18 +55,18 @@ std::uint64_t stepOf(const BranchRequest& request, const Scenario& scenario) {
 }
 
 Fork read(const BranchRequest& request) {
-  Fork fork{.run = readRecordedRun(request.recording), .state = {}};
+  Fork fork{.run = readRecordedRun(request.files), .state = {}};
   const std::uint64_t step = stepOf(request, fork.run.scenario);
   bool found = false;
-  const mcap::Reader reader(request.recording);
+  const mcap::JoinedReader reader(request.files);
   forEachMessageOf(dds::topics::kPlantState, reader, fork.run.begin_ns, [&](const msg::PlantState& state, const auto&) {
     if (state.step() != step) return;
     fork.state = state;
     found = true;
   });
   if (!found || step >= fork.run.last_step) {
-    throw UsageError(request.recording + ": expected a step before its last, " + std::to_string(fork.run.last_step) +
-                     ", found " + std::to_string(step));
+    throw UsageError(request.files.string() + ": expected a step before its last, " +
+                     std::to_string(fork.run.last_step) + ", found " + std::to_string(step));
   }
   return fork;
 }
@@ -97,7 +99,7 @@ CheckpointSet checkpointAt(const Fork& fork, const fs::path& folder, const RunRe
   const std::uint64_t step = fork.state.step();
   std::vector<std::string> services = controllerNames(original.scenario);
   services.emplace_back(kPlantName);
-  const mcap::Reader reader(original.file);
+  const mcap::JoinedReader reader(original.file);
   const bool is_ours = metadataValue(reader, "baton.run", "build_id") == buildId();
   CheckpointSet newest =
       is_ours ? newestCheckpoint(original.file, original.checkpoints_from_ns, step, services) : CheckpointSet{};
@@ -179,7 +181,7 @@ void branch(const BranchRequest& request, ExitCode& exit_code) {
     run.out = (folder / (scenario.name + ".mcap")).string();
   }
   nlohmann::ordered_json result = runFrom(set, folder, text, original, run, exit_code);
-  result["branch_of"] = fs::absolute(original.file).string();
+  result["branch_of"] = fs::absolute(original.file.first()).string();
   result["branch_step"] = step;
   if (request.json) {
     std::cout << toText(result) << '\n';
@@ -199,7 +201,8 @@ void addBranchCommand(CLI::App& app, ExitCode& exit_code) {
       "to come out the same. Without a change the branch gives the bytes of the original run.\n"
       "  baton branch run.mcap --at 4000 --swap tracking\n"
       "  baton branch run.mcap --at-time 2 --set controllers.impedance.parameters.kp=300 --set duration_s=6");
-  command->add_option("recording", request->recording, "recording of a run (MCAP)")->required();
+  addRecording(*command, request->recording, "recording",
+               "recording of a run (MCAP); several, or a folder of them: read as one");
   auto* at = command->add_option("--at", request->at_step, "step to go on from");
   command->add_option("--at-time", request->at_s, "the same in seconds of the run")->excludes(at);
   command->add_option("--swap", request->swap, "hand over to this controller, as soon as the margin allows");
@@ -209,7 +212,12 @@ void addBranchCommand(CLI::App& app, ExitCode& exit_code) {
   addCellOptions(*command, request->run.cell, request->run.domain);
   addTransport(*command, request->run.transport);
   command->add_flag("--json", request->json, "print the result as JSON");
-  command->callback([=, &exit_code] { branch(*request, exit_code); });
+  command->callback([=, &exit_code] {
+    ExitCode holes = ExitCode::kOk;
+    request->files = findRecording(request->recording, holes);
+    branch(*request, exit_code);
+    if (exit_code == ExitCode::kOk) exit_code = holes;
+  });
 }
 
 }  // namespace baton

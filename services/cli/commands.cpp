@@ -36,9 +36,9 @@ void addCommands(CLI::App& app, ExitCode& exit_code) {
   addBranchCommand(app, exit_code);
   addRerunCommand(app, exit_code);
   addKillsCommand(app, exit_code);
-  addMetricsCommand(app);
-  addShadowCommand(app);
-  addWhatIfCommand(app);
+  addMetricsCommand(app, exit_code);
+  addShadowCommand(app, exit_code);
+  addWhatIfCommand(app, exit_code);
   addFiguresCommand(app, exit_code);
   addModelCommand(app, exit_code);
   addLawsCommand(app);

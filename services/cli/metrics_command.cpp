@@ -6,22 +6,25 @@
 
 #include "report/metrics.hpp"
 #include "runtime/json.hpp"
+#include "runtime/recording_files.hpp"
 
 namespace baton {
 
-void addMetricsCommand(CLI::App& app) {
-  const auto file = std::make_shared<std::string>();
+void addMetricsCommand(CLI::App& app, ExitCode& exit_code) {
+  const auto wish = std::make_shared<RecordingWish>();
   const auto json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("metrics", "errors, efforts and contact forces of a recorded run, in numbers");
   command->footer(
       "Errors are desired minus actual. Overshoot and settling are of the way from where a signal starts to its\n"
       "set-point; settled means within 2 % of that way for good. A dash: the desired value moves, there is no way, or\n"
       "what it takes was not recorded.");
-  command->add_option("file", *file, "recording (MCAP)")->required();
+  addRecording(*command, *wish);
   command->add_flag("--json", *json, "print JSON");
-  command->callback([=] {
-    const Trace trace = readTrace(*file);
-    if (!trace.is_complete) std::fprintf(stderr, "baton: warning: %s is not certified complete\n", file->c_str());
+  command->callback([=, &exit_code] {
+    const mcap::FileList files = findRecording(*wish, exit_code);
+    const Trace trace = readTrace(files);
+    if (!trace.is_complete)
+      std::fprintf(stderr, "baton: warning: %s is not certified complete\n", files.string().c_str());
     const Metrics metrics = metricsOf(trace);
     std::puts((*json ? toText(toJson(metrics)) : toText(metrics)).c_str());
   });

@@ -94,7 +94,7 @@ bool cameToNothing(const std::vector<msg::Decision>& decisions, std::size_t inde
 }
 
 /// Whether what a controller computes has mattered before that log time: it held the baton, or was asked to take it.
-bool matteredBefore(const mcap::Reader& reader, const std::string& name, std::uint64_t log_time_ns) {
+bool matteredBefore(const mcap::Source& reader, const std::string& name, std::uint64_t log_time_ns) {
   bool has_mattered = false;
   forEachMessageOf(dds::topics::kPlantState, reader, 0, [&](const msg::PlantState& state, const auto& view) {
     has_mattered = has_mattered || (view.log_time_ns < log_time_ns && state.holder() == name);
@@ -111,7 +111,8 @@ using Relaunches = std::map<std::string, std::uint64_t>;
 
 /// The scenario with the controllers that were started while the run went on, from its first step: as long as they
 /// stand by, nobody feels them.
-std::string withLaunches(const mcap::Reader& reader, std::string text, const fs::path& file, Relaunches& relaunches) {
+std::string withLaunches(const mcap::Source& reader, std::string text, const mcap::FileList& file,
+                         Relaunches& relaunches) {
   std::map<std::uint64_t, msg::LaunchRequest> requests;
   forEachMessageOf(dds::topics::kLaunchRequest, reader, 0,
                    [&](const msg::LaunchRequest& request, const auto&) { requests[request.request_id()] = request; });
@@ -133,8 +134,8 @@ std::string withLaunches(const mcap::Reader& reader, std::string text, const fs:
 
 }  // namespace
 
-RecordedRun readRecordedRun(const fs::path& file) {
-  const mcap::Reader reader(file);
+RecordedRun readRecordedRun(const mcap::FileList& file) {
+  const mcap::JoinedReader reader(file);
   const Take take = lastTake(reader);
   Relaunches relaunches;
   RecordedRun run{

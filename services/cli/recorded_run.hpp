@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mcap/joined_reader.hpp"
 #include "msg/decision.h"
 #include "runtime/scenario.hpp"
 
@@ -15,7 +16,7 @@ namespace baton {
 
 /// Of a run that was reset, its last take.
 struct RecordedRun {
-  std::filesystem::path file;
+  mcap::FileList file;
   std::string scenario_text;
   std::string robot_text;
   std::optional<std::string> checkpoint;  // the bytes of the file that a branch began with
@@ -29,7 +30,7 @@ struct RecordedRun {
 };
 
 /// Throws UsageError when the file is not the recording of a run, and what reading a recording throws.
-[[nodiscard]] RecordedRun readRecordedRun(const std::filesystem::path& file);
+[[nodiscard]] RecordedRun readRecordedRun(const mcap::FileList& file);
 
 /// The handovers of the scenario and those that operators asked for, by step.
 [[nodiscard]] std::vector<PlannedSwap> swapsOf(const RecordedRun& run);

@@ -31,7 +31,7 @@ std::string Rerun::text() const {
                      decisions == 1 ? "" : "s", hash);
 }
 
-Rerun rerun(const std::filesystem::path& recording, const std::filesystem::path& folder, RunRequest run,
+Rerun rerun(const mcap::FileList& recording, const std::filesystem::path& folder, RunRequest run,
             const std::function<ExitCode(RunSession&)>& follow) {
   const RecordedRun original = readRecordedRun(recording);
   if (original.scenario.mode == SimMode::kRealtime) {
@@ -57,7 +57,7 @@ Rerun rerun(const std::filesystem::path& recording, const std::filesystem::path&
   // A repetition that ended before its first step has no messages of the loop, or no file.
   if (made.result.at("steps").get<std::uint64_t>() > made.result.at("first_step").get<std::uint64_t>()) {
     now = hashRun(made.recording);
-    made.made_with = madeWithDifferences(metadataOf(mcap::Reader(recording), "baton.run"),
+    made.made_with = madeWithDifferences(metadataOf(mcap::JoinedReader(recording), "baton.run"),
                                          metadataOf(mcap::Reader(made.recording), "baton.run"));
   }
   made.comparison = compare(then, now);

@@ -30,7 +30,7 @@ struct Rerun {
 
 /// Runs the whole distributed system in `folder`, which is there. `run` says in which cell and to which file; `follow`
 /// waits for its end. Throws UsageError for what cannot be repeated, and what a run throws.
-[[nodiscard]] Rerun rerun(const std::filesystem::path& recording, const std::filesystem::path& folder, RunRequest run,
+[[nodiscard]] Rerun rerun(const mcap::FileList& recording, const std::filesystem::path& folder, RunRequest run,
                           const std::function<ExitCode(RunSession&)>& follow);
 
 }  // namespace baton

@@ -9,13 +9,14 @@
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/recording_files.hpp"
 
 namespace baton {
 namespace {
 namespace fs = std::filesystem;
 
 struct RerunRequest {
-  std::string recording;
+  RecordingWish recording;
   RunRequest run;
   bool json = false;
 };
@@ -40,22 +41,23 @@ nlohmann::ordered_json toJson(const Rerun& made, const std::string& recording) {
 }
 
 void tellRerun(const RerunRequest& request, ExitCode& exit_code) {
+  ExitCode holes = ExitCode::kOk;
+  const mcap::FileList files = findRecording(request.recording, holes);
   const fs::path folder = stateFolder() / "reruns" / newRunId();
   makeFolder(folder);
   const bool is_kept = !request.run.out.empty();
   RunRequest run = request.run;
   if (!is_kept) run.out = (folder / "rerun.mcap").string();
   ExitCode ended = ExitCode::kOk;
-  const Rerun made =
-      rerun(request.recording, folder, run, [&](RunSession& session) { return ended = runToTheEnd(session); });
+  const Rerun made = rerun(files, folder, run, [&](RunSession& session) { return ended = runToTheEnd(session); });
   if (request.json) {
-    std::puts(toText(toJson(made, request.recording)).c_str());
+    std::puts(toText(toJson(made, files.string())).c_str());
   } else {
     std::printf("%s\n", made.text().c_str());
     if (is_kept || !made.isIdentical()) std::printf("recording %s\n", made.recording.c_str());
   }
   if (made.isIdentical()) fs::remove_all(folder);  // else it is there to look into
-  exit_code = made.isIdentical() ? ExitCode::kOk : ExitCode::kFailed;
+  exit_code = made.isIdentical() ? holes : ExitCode::kFailed;
   if (ended == ExitCode::kInterrupted) exit_code = ended;
 }
 
@@ -72,7 +74,8 @@ void addRerunCommand(CLI::App& app, ExitCode& exit_code) {
       "with processes that live and without timers, and every payload of the loop is compared.\n"
       "Exit codes: 0 identical, 1 they differ: it names what differs of what recorded the two, then the first step and "
       "topic.");
-  command->add_option("recording", request->recording, "recording of a run in lockstep (MCAP)")->required();
+  addRecording(*command, request->recording, "recording",
+               "recording of a run in lockstep (MCAP); several, or a folder of them: read as one");
   command->add_option("--out", request->run.out, "file to record to (default: kept only when it differs)");
   command->add_flag("--overwrite", request->run.overwrite, "replace the file --out names");
   addCellOptions(*command, request->run.cell, request->run.domain);

@@ -8,21 +8,23 @@
 #include "report/shadow.hpp"
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/recording_files.hpp"
 
 namespace baton {
 namespace {
 namespace fs = std::filesystem;
 
 struct ShadowRequest {
-  std::string file;
+  RecordingWish recording;
   std::string out;
   bool json = false;
 };
 
-void shadow(const ShadowRequest& request) {
-  const RecordedEfforts run = readEfforts(request.file);
+void shadow(const ShadowRequest& request, ExitCode& exit_code) {
+  const mcap::FileList files = findRecording(request.recording, exit_code);
+  const RecordedEfforts run = readEfforts(files);
   if (!run.trace.is_complete)
-    std::fprintf(stderr, "baton: warning: %s is not certified complete\n", request.file.c_str());
+    std::fprintf(stderr, "baton: warning: %s is not certified complete\n", files.string().c_str());
   const Shadow table = shadowOf(run);
   const fs::path stem = fs::path(request.out) / (run.trace.scenario.name + "_shadow");
   if (request.json) {
@@ -41,7 +43,7 @@ void shadow(const ShadowRequest& request) {
 
 }  // namespace
 
-void addShadowCommand(CLI::App& app) {
+void addShadowCommand(CLI::App& app, ExitCode& exit_code) {
   const auto request = std::make_shared<ShadowRequest>();
   CLI::App* command =
       app.add_subcommand("shadow", "what each controller of a recorded run would have done, beside what was applied");
@@ -50,10 +52,10 @@ void addShadowCommand(CLI::App& app) {
       "and\n"
       "largest value; and as jump, the largest change against the step before that a handover without any help would\n"
       "have made. A dash: it did not compute while it stood by.");
-  command->add_option("file", request->file, "recording (MCAP)")->required();
+  addRecording(*command, request->recording);
   command->add_option("--out", request->out, "folder for a drawing of all efforts over time, SVG and PNG");
   command->add_flag("--json", request->json, "print JSON");
-  command->callback([=] { shadow(*request); });
+  command->callback([=, &exit_code] { shadow(*request, exit_code); });
 }
 
 }  // namespace baton

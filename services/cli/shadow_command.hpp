@@ -3,8 +3,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include "base/error.hpp"
+
 namespace baton {
 
-void addShadowCommand(CLI::App& app);
+void addShadowCommand(CLI::App& app, ExitCode& exit_code);
 
 }  // namespace baton

@@ -20,6 +20,7 @@
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/progress_line.hpp"
+#include "runtime/recording_files.hpp"
 #include "whatif/command_file.hpp"
 #include "whatif/counterfactual.hpp"
 
@@ -28,7 +29,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct WhatIfRequest {
-  std::string file;
+  RecordingWish recording;
+  mcap::FileList files;  // found
   CounterfactualWish wish;
   std::string out;
   bool json = false;
@@ -37,7 +39,7 @@ struct WhatIfRequest {
 /// Both efforts over the run, as its drawing has them.
 class Curves {
  public:
-  explicit Curves(const fs::path& file) : trace_(readTrace(file)), effort_(none()), recorded_(none()) {}
+  explicit Curves(const mcap::FileList& file) : trace_(readTrace(file)), effort_(none()), recorded_(none()) {}
 
   void add(const RecordedStep& step, const JointVector& effort) {
     const auto k = static_cast<Eigen::Index>(step.step - trace_.first_step);
@@ -69,8 +71,8 @@ class Curves {
   Eigen::MatrixXd recorded_;
 };
 
-mcap::StringMap aboutOf(const Counterfactual& made, const fs::path& file) {
-  return {{"recording", fs::absolute(file).string()},
+mcap::StringMap aboutOf(const Counterfactual& made, const mcap::FileList& file) {
+  return {{"recording", fs::absolute(file.first()).string()},
           {"run", made.run},
           {"run_hash", std::to_string(made.run_hash)},
           {"law", made.law},
@@ -92,11 +94,13 @@ fs::path stemOf(const WhatIfRequest& request, const Scenario& scenario) {
 Counterfactual makeWithFiles(const WhatIfRequest& request, const std::function<void(double)>& progress,
                              std::vector<std::string>& files) {
   expectGnuplot();
-  Curves curves(request.file);
+  Curves curves(request.files);
   const fs::path stem = stemOf(request, curves.scenario());
   const std::string file = stem.string() + ".mcap";
   makeFolder(request.out);
-  if (std::error_code missing; fs::equivalent(file, request.file, missing)) {
+  for (const fs::path& read : request.files.paths()) {
+    std::error_code missing;
+    if (!fs::equivalent(file, read, missing)) continue;
     throw UsageError("--out " + request.out + ": expected a folder other than that of a recording called " + file);
   }
   std::optional<CommandFile> commands;  // made once it is sure that there is something to write
@@ -105,7 +109,7 @@ Counterfactual makeWithFiles(const WhatIfRequest& request, const std::function<v
     if (!commands) commands.emplace(file, author, curves.scenario().step_ns);
   };
   Counterfactual made = counterfactual(
-      request.file, request.wish,
+      request.files, request.wish,
       [&](const RecordedStep& step, const JointVector& effort, std::uint64_t inputs_hash) {
         curves.add(step, effort);
         open();
@@ -113,7 +117,7 @@ Counterfactual makeWithFiles(const WhatIfRequest& request, const std::function<v
       },
       progress);
   open();
-  commands->close(aboutOf(made, request.file));
+  commands->close(aboutOf(made, request.files));
   curves.drawTo(stem, made.law, placeOf(made.wish));
   files = {stem.string() + ".svg", file};
   return made;
@@ -124,10 +128,11 @@ void whatIf(const WhatIfRequest& request) {
   const auto progress = [&](double part) { line.show(progressBar(part)); };
   progress(0.0);  // what was decided in the run is read first
   std::vector<std::string> files;
-  const Counterfactual made = request.out.empty() ? counterfactual(request.file, request.wish, {}, progress)
+  const Counterfactual made = request.out.empty() ? counterfactual(request.files, request.wish, {}, progress)
                                                   : makeWithFiles(request, progress, files);
   line.show("");
-  if (!made.is_complete) std::fprintf(stderr, "baton: warning: %s is not certified complete\n", request.file.c_str());
+  if (!made.is_complete)
+    std::fprintf(stderr, "baton: warning: %s is not certified complete\n", request.files.string().c_str());
   if (request.json) {
     nlohmann::ordered_json json = toJson(made);
     if (!files.empty()) json["files"] = files;
@@ -140,7 +145,7 @@ void whatIf(const WhatIfRequest& request) {
 
 }  // namespace
 
-void addWhatIfCommand(CLI::App& app) {
+void addWhatIfCommand(CLI::App& app, ExitCode& exit_code) {
   const auto request = std::make_shared<WhatIfRequest>();
   CLI::App* command =
       app.add_subcommand("whatif", "what another law, or other values, would have commanded in a recorded run");
@@ -159,7 +164,7 @@ void addWhatIfCommand(CLI::App& app) {
       "uses\n"
       "force, no recording of a run, or one without a topic that is needed; 3 no such file, or one that cannot be\n"
       "written.");
-  command->add_option("file", request->file, "recording (MCAP)")->required();
+  addRecording(*command, request->recording);
   command->add_option("--law", request->wish.law, "the law (see `baton laws`)");
   command->add_option("--as", request->wish.as,
                       "the controller in whose place: it holds the baton when that one did, and stands by when that "
@@ -171,7 +176,10 @@ void addWhatIfCommand(CLI::App& app) {
   command->add_option("--out", request->out,
                       "folder for a drawing (SVG, PNG) and the commands (MCAP, topic whatif_command)");
   command->add_flag("--json", request->json, "print JSON");
-  command->callback([=] { whatIf(*request); });
+  command->callback([=, &exit_code] {
+    request->files = findRecording(request->recording, exit_code);
+    whatIf(*request);
+  });
 }
 
 }  // namespace baton

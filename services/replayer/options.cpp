@@ -1,6 +1,7 @@
 #include "options.hpp"
 
 #include <charconv>
+#include <filesystem>
 
 #include "base/error.hpp"
 #include "runtime/command_line.hpp"
@@ -50,13 +51,17 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
       "On a terminal: space pauses and resumes; right: 1 s ahead, in a pause the next message; left: 1 s back;\n"
       "+ and - double and halve the rate; q ends it. From elsewhere: `baton player`."};
   app.footer(
+      std::string(kRangeHelp) +
+      "A range that begins in the middle begins with what a late joiner would have been given there: of each writer of "
+      "a\n"
+      "transient-local topic the latest samples, as many as it keeps. A seek on the way sends nothing again.\n"
       "Exit codes: 0 all was replayed, or as much as was asked for; 1 the recording is cut or damaged, or a topic "
       "in\n"
       "it cannot be replayed, and the rest was replayed, or a message was later than --max-late-us; 2 wrong input or "
       "not a recording, 3 the file or DDS is "
       "not\n"
       "available, 130 interrupted.");
-  app.add_option("file", options.file, "recording (MCAP)")->required();
+  addRecording(app, options.recording);
   addDomain(app, options.domain)->envname("BATON_DOMAIN");
   addCell(app, options.cell);
   app.add_option("--run", options.run, "run to speak in (default: a new one)");
@@ -69,9 +74,10 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
          "--rate", rate,
          "recorded seconds per second, or max; above 1 it waits for slow readers rather than let them lose messages")
       ->capture_default_str();
-  app.add_option("--from", options.from_s, "start here, in s of log time from the recording's first message")
-      ->check(notNegative());
-  app.add_option("--to", options.to_s, "end here, likewise")->check(notNegative());
+  addRange(app, options.range);
+  app.add_flag("--no-latched", options.without_latched,
+               "of a range that begins in the middle, do not send first what transient-local topics keep for late "
+               "joiners");
   app.add_option("--skip-gaps", options.longest_gap_s,
                  "wait no longer than so many s (of log time) where nothing was logged, as after a clock was set")
       ->check(notNegative());
@@ -98,9 +104,9 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
   options.rate = parseRate("--rate", rate);
   options.remap = parseRemap(remap);
   if (loop->count() > 0) options.passes = parsePasses(passes);
-  if (options.from_s && options.to_s && *options.to_s < *options.from_s) {
-    throw UsageError("--to: expected a time that is not before --from");
-  }
+  expectOneRange(options.range);
+  const std::vector<std::string>& given = options.recording.given;
+  options.file = mcap::FileList(std::vector<std::filesystem::path>(given.begin(), given.end())).string();
   if (options.max_late_us && options.rate <= 0.0) {
     throw UsageError("--max-late-us: expected a --rate at which messages have their time, found max");
   }

@@ -7,12 +7,15 @@
 #include <vector>
 
 #include "dds/types.hpp"
+#include "runtime/recording_files.hpp"
+#include "runtime/recording_range.hpp"
 #include "runtime/scheduling.hpp"
 
 namespace baton {
 
 struct ReplayOptions {
-  std::string file;
+  RecordingWish recording;
+  std::string file;  // what of it is named, for people
   int domain = 0;
   std::string cell = "replay";           // a partition of its own, so that a running cell is not disturbed
   std::string run;                       // never empty once parsed
@@ -21,10 +24,10 @@ struct ReplayOptions {
   std::vector<std::string> topics;           // recorded names; all when empty
   std::map<std::string, std::string> remap;  // recorded name to the name published
   double rate = 1.0;                         // recorded seconds per second; 0 for as fast as readers take it
-  std::optional<double> from_s;              // log time from the recording's first message; from its start
-  std::optional<double> to_s;                // to its end
-  std::optional<double> longest_gap_s;       // in which nothing was logged; what is longer is cut to that
-  std::uint32_t passes = 1;                  // through it; 0 without end
+  RangeWish range;
+  bool without_latched = false;         // does not begin with what a late joiner would have been given
+  std::optional<double> longest_gap_s;  // in which nothing was logged; what is longer is cut to that
+  std::uint32_t passes = 1;             // through it; 0 without end
   bool starts_paused = false;
   std::size_t wait_for = 0;                   // reading processes on every topic before the first message
   std::vector<std::string> wait_for_readers;  // services that read at least one

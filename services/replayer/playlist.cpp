@@ -23,16 +23,21 @@ bool isReplayersOwn(const std::string& topic) {
 }  // namespace
 
 Playlist::Playlist(const ReplayOptions& options)
-    : file_(options.file),
-      has_range_(options.from_s || options.to_s),
-      reader_(options.file, {.on_damage = [this](const mcap::Damage& damage) { noteDamage(damage); }}) {
+    : found_(findRecording(options.recording)),
+      has_range_(!options.range.isAll()),
+      reader_(found_.files,
+              [this](const std::filesystem::path& file, const mcap::Damage& damage) { noteDamage(file, damage); }),
+      range_(options.range, reader_, found_.files.string()) {
+  for (const std::string& hole : found_.missing) noteProblem(hole);
   if (!reader_.info().is_complete) noteProblem("the recording was cut: " + reader_.info().problem);
   for (const std::string& text : reader_.info().contradictions) spdlog::warn("{}", escaped(text));
   checkNames(options);
-  filter_.start_time_ns = mcap::logTimeAt(reader_, options.from_s.value_or(0.0));
-  if (options.to_s) filter_.end_time_ns = mcap::logTimeAt(reader_, *options.to_s);
+  filter_.start_time_ns = std::max(range_.startTime(), startTime());
+  filter_.end_time_ns = range_.endTime();
   chooseChannels(options);
-  total_ = countMessages();
+  if (!options.without_latched) latched_ = latchedBefore(reader_, filter_);
+  for (LatchedMessage& one : latched_) one.view.log_time_ns = filter_.start_time_ns;  // due at once
+  total_ = countMessages() + latched_.size();
   rewind();
 }
 
@@ -40,8 +45,9 @@ void Playlist::leaveOut(mcap::ChannelId id, const std::string& reason) {
   noteLeftOut(reason);
   endpoints_.erase(id);
   std::erase(filter_.channels, id);
+  std::erase_if(latched_, [&](const LatchedMessage& one) { return one.view.channel->id == id; });
   expectTopics();
-  total_ = countMessages();
+  total_ = countMessages() + latched_.size();
 }
 
 void Playlist::noteLeftOut(const std::string& reason) {
@@ -50,7 +56,7 @@ void Playlist::noteLeftOut(const std::string& reason) {
 
 void Playlist::expectTopics() const {
   if (!endpoints_.empty()) return;
-  throw UsageError(file_ + ": expected a topic to replay, found none" +
+  throw UsageError(found_.files.string() + ": expected a topic to replay, found none" +
                    (problems_.empty() ? "" : ": " + problems_.back()));
 }
 
@@ -59,9 +65,8 @@ void Playlist::noteProblem(const std::string& problem) {
   problems_.push_back(problem);
 }
 
-/// Each pass over the file comes across the same damage.
-void Playlist::noteDamage(const mcap::Damage& damage) {
-  if (damaged_.insert(damage).second) noteProblem(mcap::describe(damage));
+void Playlist::noteDamage(const std::filesystem::path& file, const mcap::Damage& damage) {
+  noteProblem((found_.files.paths().size() > 1 ? file.string() + ": " : "") + mcap::describe(damage));
 }
 
 void Playlist::checkNames(const ReplayOptions& options) const {
@@ -100,10 +105,10 @@ void Playlist::chooseChannels(const ReplayOptions& options) {
   expectTopics();
 }
 
-std::uint64_t Playlist::countMessages() const {
+std::uint64_t Playlist::countMessages() {
   std::uint64_t count = 0;
   if (has_range_) {
-    reader_.forEachMessage(filter_, [&](const mcap::MessageView&) { ++count; });
+    reader_.forEachMessage(filter_, [&](const mcap::MessageView& message) { count += range_.takes(message) ? 1 : 0; });
     return count;
   }
   const auto& counts = reader_.statistics().channel_message_counts;
@@ -113,12 +118,27 @@ std::uint64_t Playlist::countMessages() const {
   return count;
 }
 
-bool Playlist::next(mcap::MessageView& message) { return cursor_->next(message); }
+bool Playlist::next(mcap::MessageView& message) {
+  if (next_latched_ < latched_.size()) {
+    message = latched_[next_latched_++].view;
+    return true;
+  }
+  while (cursor_->next(message)) {
+    if (range_.takes(message)) return true;
+  }
+  return false;
+}
 
 void Playlist::seek(std::uint64_t log_time_ns) {
   mcap::MessageFilter filter = filter_;
   filter.start_time_ns = std::max(log_time_ns, filter_.start_time_ns);
   cursor_.emplace(reader_.messages(filter));
+  next_latched_ = latched_.size();
+}
+
+void Playlist::rewind() {
+  seek(filter_.start_time_ns);
+  next_latched_ = 0;
 }
 
 std::vector<std::string> Playlist::topics() const {

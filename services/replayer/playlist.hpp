@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "dds/endpoint.hpp"
-#include "mcap/reader.hpp"
+#include "mcap/joined_reader.hpp"
 #include "options.hpp"
+#include "runtime/latched.hpp"
 
 namespace baton {
 
@@ -31,13 +32,15 @@ class Playlist {
   /// Does without a channel that DDS refuses, from the next seek() or rewind() on. Throws UsageError when no other is
   /// left.
   void leaveOut(mcap::ChannelId id, const std::string& reason);
-  void rewind() { seek(filter_.start_time_ns); }
+  /// To the beginning, with what a late joiner would have been given before it.
+  void rewind();
 
   /// The writers that stand in for the recorded ones.
   [[nodiscard]] const std::map<mcap::ChannelId, dds::EndpointOptions>& endpoints() const { return endpoints_; }
   /// Their topics, as they were recorded, sorted.
   [[nodiscard]] std::vector<std::string> topics() const;
-  [[nodiscard]] std::uint64_t total() const { return total_; }  // messages from the first to the last time
+  /// Messages from the first to the last time, and those sent before them.
+  [[nodiscard]] std::uint64_t total() const { return total_; }
   /// Log time of the recording's first message [ns], and from there to its last one; positions count from the first.
   [[nodiscard]] std::uint64_t startTime() const { return reader_.statistics().start_time_ns; }
   [[nodiscard]] std::uint64_t duration() const;
@@ -48,23 +51,25 @@ class Playlist {
   [[nodiscard]] const std::vector<std::string>& problems() const { return problems_; }
 
  private:
-  void noteDamage(const mcap::Damage& damage);
+  void noteDamage(const std::filesystem::path& file, const mcap::Damage& damage);
   void noteProblem(const std::string& problem);
   void checkNames(const ReplayOptions& options) const;
   void chooseChannels(const ReplayOptions& options);
   void noteLeftOut(const std::string& reason);
   void expectTopics() const;
-  [[nodiscard]] std::uint64_t countMessages() const;
+  [[nodiscard]] std::uint64_t countMessages();
 
-  const std::string file_;
-  const bool has_range_;
   std::vector<std::string> problems_;
-  std::set<mcap::Damage> damaged_;  // that was told of
-  mcap::Reader reader_;
+  FoundRecording found_;
+  const bool has_range_;
+  mcap::JoinedReader reader_;
+  RecordingRange range_;
   mcap::MessageFilter filter_;
   std::map<mcap::ChannelId, dds::EndpointOptions> endpoints_;
   std::uint64_t total_ = 0;
-  std::optional<mcap::MessageCursor> cursor_;
+  std::optional<mcap::JoinedCursor> cursor_;
+  std::vector<LatchedMessage> latched_;  // sent before the first message
+  std::size_t next_latched_ = 0;
 };
 
 }  // namespace baton

@@ -21,7 +21,7 @@ TEST(ReplayOptions, NeedAFileAlone) {
   EXPECT_EQ(options.cell, "replay");
   EXPECT_EQ(options.rate, 1.0);
   EXPECT_TRUE(options.topics.empty());
-  EXPECT_FALSE(options.from_s || options.to_s);
+  EXPECT_FALSE(!options.range.isAll());
 }
 
 TEST(ReplayOptions, SpeakInARunOfTheirOwnUnlessTold) {
@@ -91,7 +91,7 @@ TEST(ReplayOptions, ALimitOfLatenessNeedsARate) {
 }
 
 TEST(ReplayOptions, RefuseATimeRangeThatEndsBeforeItStarts) {
-  EXPECT_EQ(parsed({"run.mcap", "--from", "1", "--to", "2"}).to_s, 2.0);
+  EXPECT_EQ(parsed({"run.mcap", "--from", "1", "--to", "2"}).range.to_s, 2.0);
   EXPECT_THROW((void)parsed({"run.mcap", "--from", "2", "--to", "1"}), UsageError);
   EXPECT_THROW((void)parsed({"run.mcap", "--from", "-1"}), UsageError);
 }

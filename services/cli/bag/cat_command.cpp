@@ -54,6 +54,7 @@ void addBagCat(CLI::App& bag, ExitCode& exit_code) {
   const auto request = std::make_shared<CatRequest>();
   CLI::App* command = bag.add_subcommand("cat", "the messages, decoded, one JSON object a line");
   command->footer(
+      std::string(kRangeHelp) +
       "Messages are decoded with the IDL text that the recording carries; those of a topic without one are printed as\n"
       "their bytes in hex, \"data\", beside the name of their type. Numbers read back as exactly what was recorded. "
       "64-bit\n"
@@ -64,7 +65,7 @@ void addBagCat(CLI::App& bag, ExitCode& exit_code) {
       "Exit codes: 0 all was printed, 1 some of it is cut, damaged or none of its type and the rest was printed,\n"
       "2 wrong input or not a recording, 3 cannot be opened or printed.");
   addTopicSelection(*command, request->selection);
-  addTimeSelection(*command, request->selection);
+  addRange(*command, request->selection.range);
   command->add_option("--limit", request->limit, "end after so many messages")->check(atLeastOne());
   command->add_flag("--raw", request->raw, "bytes in hex, whatever the topic");
   command->callback([request, &exit_code] { exit_code = cat(*request); });

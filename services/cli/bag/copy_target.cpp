@@ -5,11 +5,16 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "mcap/repeated.hpp"
 
 namespace baton {
 
 void addTarget(CLI::App& command, CopyTarget& target) {
   command.add_option("out", target.file, "recording to make")->required();
+  addOverwrite(command, target);
+}
+
+void addOverwrite(CLI::App& command, CopyTarget& target) {
   command.add_flag("--overwrite", target.overwrite, "replace OUT if it is there");
 }
 
@@ -28,9 +33,7 @@ mcap::WriterOptions optionsFor(const CopyTarget& target, const std::vector<std::
   return options;
 }
 
-std::unique_ptr<mcap::Reader> openForCopy(const std::string& file) {
-  auto reader = std::make_unique<mcap::Reader>(file);
-  const mcap::FileInfo& info = reader->info();
+void sayHowItIs(const std::string& file, const mcap::FileInfo& info) {
   if (!info.is_complete) {
     std::fprintf(stderr, "%s is not whole, and is used as far as it goes: %s\n", file.c_str(),
                  escaped(info.problem).c_str());
@@ -38,10 +41,16 @@ std::unique_ptr<mcap::Reader> openForCopy(const std::string& file) {
   for (const std::string& text : info.contradictions) {
     std::fprintf(stderr, "%s is copied as its data have it: %s\n", file.c_str(), escaped(text).c_str());
   }
+}
+
+std::unique_ptr<mcap::Reader> openForCopy(const std::string& file) {
+  auto reader = std::make_unique<mcap::Reader>(file);
+  sayHowItIs(file, reader->info());
   return reader;
 }
 
 std::string withoutClaim(const std::string& name) {
+  if (name == mcap::kRepeatedRecord) return "baton.original_latched";
   if (name == "baton.certificate") return "baton.original_certificate";
   return name == "certificate.json" ? "original_certificate.json" : name;
 }

@@ -17,16 +17,20 @@ struct CopyTarget {
 
 /// OUT and --overwrite.
 void addTarget(CLI::App& command, CopyTarget& target);
+/// Without its name.
+void addOverwrite(CLI::App& command, CopyTarget& target);
 
 /// How the file is written. Throws UsageError when it is one of those that are read, and
 /// UnavailableError when it is there and is not to be replaced.
 [[nodiscard]] mcap::WriterOptions optionsFor(const CopyTarget& target, const std::vector<std::string>& inputs);
 
+/// Says on standard error that a recording is used as far as it goes, and where it contradicts itself.
+void sayHowItIs(const std::string& file, const mcap::FileInfo& info);
 /// Opens a recording that is to be copied; says on standard error when it is not whole. Throws what Reader throws.
 [[nodiscard]] std::unique_ptr<mcap::Reader> openForCopy(const std::string& file);
 
-/// The name of a metadata record or an attachment in a copy that is not the whole: its certificate holds for the
-/// original, and is called so.
+/// The name of a metadata record or an attachment in a copy that is not the whole: its certificate, and the count of
+/// what the file begins with from before, hold for the original, and are called so.
 [[nodiscard]] std::string withoutClaim(const std::string& name);
 
 }  // namespace baton

@@ -4,14 +4,20 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "bag/copy_target.hpp"
 #include "bag/selection.hpp"
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
+#include "dds/hash.hpp"
 #include "mcap/lookup.hpp"
+#include "mcap/repeated.hpp"
 #include "runtime/json.hpp"
+#include "runtime/latched.hpp"
 #include "runtime/progress_line.hpp"
 
 namespace baton {
@@ -20,66 +26,128 @@ namespace {
 struct CutRequest {
   Selection what;
   CopyTarget out;
+  bool without_latched = false;
   bool json = false;
 };
 
-mcap::MessageFilter filterFor(const CutRequest& request, const mcap::Reader& reader) {
-  const Selection& what = request.what;
-  if (!what.from_s && !what.to_s && what.topics.empty()) {
-    throw UsageError("expected what to keep: --from, --to or --topics");
-  }
-  mcap::MessageFilter filter = filterOf(what, reader);
-  filter.order = mcap::MessageFilter::Order::kFile;
-  return filter;
-}
-
 /// What a copy that is not the whole says of itself.
-mcap::StringMap cutMetadata(const Selection& what, std::uint64_t kept, std::uint64_t of) {
-  mcap::StringMap values{{"file", what.file},
+mcap::StringMap cutMetadata(const Selection& what, const std::string& file, std::uint64_t kept, std::uint64_t of) {
+  mcap::StringMap values{{"file", file},
                          {"messages", std::to_string(kept)},
                          {"left_out", std::to_string(of - kept)},
                          {"topics", fmt::format("{}", fmt::join(what.topics, ","))}};
-  if (what.from_s) values["from_s"] = fmt::format("{}", *what.from_s);
-  if (what.to_s) values["to_s"] = fmt::format("{}", *what.to_s);
+  const auto say = [&](const char* key, const auto& value) {
+    if (value) values[key] = fmt::format("{}", *value);
+  };
+  say("from_s", what.range.from_s);
+  say("to_s", what.range.to_s);
+  say("from_step", what.range.from_step);
+  say("to_step", what.range.to_step);
+  say("from_sim_s", what.range.from_sim_s);
+  say("to_sim_s", what.range.to_sim_s);
   return values;
 }
 
-ExitCode cut(const CutRequest& request) {
-  const std::string& in = request.what.file;
-  const auto reader = openForCopy(in);
-  const mcap::MessageFilter filter = filterFor(request, *reader);
-  mcap::WriterOptions options = optionsFor(request.out, {in});
-  options.profile = reader->info().header.profile;
+/// What the recording says of itself, once where several files say the same.
+void copyExtras(const mcap::JoinedReader& reader, mcap::Copier& copy) {
+  std::set<std::pair<std::string, mcap::StringMap>> metadata;
+  for (const mcap::Metadata& one : reader.metadata()) {
+    // The copy is no part of a split recording, and what it repeats is said of it below.
+    const bool is_of_file = one.name == mcap::kRepeatedRecord || one.name.starts_with("baton.part");
+    if (is_of_file || !metadata.emplace(one.name, one.values).second) continue;
+    copy.metadata(withoutClaim(one.name), one.values);
+  }
+  std::set<std::pair<std::string, std::uint64_t>> attachments;  // by name and content
+  for (const mcap::AttachmentIndex& index : reader.attachments()) {
+    const mcap::Bytes data = reader.readAttachment(index);
+    if (!attachments.emplace(index.name, dds::chainHash(0, data)).second) continue;
+    copy.attachment(withoutClaim(index.name), index, data);
+  }
+}
+
+struct Copied {
+  std::uint64_t kept = 0;      // of what was chosen
+  std::uint64_t repeated = 0;  // from before its beginning
+};
+
+/// In front, what a late joiner would have been given there; then what was chosen, in the order of the files.
+Copied copyMessages(const CutRequest& request, const mcap::JoinedReader& reader, const std::string& in,
+                    mcap::Copier& copy) {
+  RecordingRange range(request.what.range, reader, in);
+  mcap::MessageFilter filter = filterOf(request.what, range, reader);
+  filter.order = mcap::MessageFilter::Order::kFile;
+  Copied copied;
+  if (!request.without_latched) {
+    for (LatchedMessage& latched : latchedBefore(reader, filter)) {
+      latched.view.log_time_ns = filter.start_time_ns;
+      copy.message(latched.view);
+      ++copied.repeated;
+    }
+  }
+  ProgressLine line;
+  const std::uint64_t begin = std::max(filter.start_time_ns, reader.statistics().start_time_ns);
+  const std::uint64_t end = std::min(filter.end_time_ns, reader.statistics().end_time_ns);
+  const auto span = static_cast<double>(end > begin ? end - begin : 1);
+  mcap::Repeated repeated = reader.repeated();  // of a recording that itself begins in the middle
+  reader.forEachMessage(filter, [&](const mcap::MessageView& message) {
+    if (!range.takes(message)) return;
+    if (repeated.takes(message)) {
+      if (request.without_latched) return;
+      ++copied.repeated;
+    } else {
+      ++copied.kept;
+    }
+    copy.message(message);
+    if (copy.messages() % 0x4000 != 0) return;
+    const double part = static_cast<double>(message.log_time_ns - begin) / span;
+    line.show(fmt::format("cutting {} {:3.0f} %", progressBar(part), 100.0 * part));
+  });
+  return copied;
+}
+
+ExitCode cut(CutRequest& request) {
+  std::vector<std::string>& given = request.what.recording.given;
+  if (given.size() < 2) throw UsageError("expected recordings and then the file to make, found " + given.front());
+  request.out.file = given.back();
+  given.pop_back();
+  if (request.what.range.isAll() && request.what.topics.empty()) {
+    throw UsageError("expected what to keep: a range (--from, --to-step, ...) or --topics");
+  }
+  ExitCode exit_code = ExitCode::kOk;
+  const mcap::FileList files = findRecording(request.what.recording, exit_code);
+  const std::string in = files.string();
+  const mcap::JoinedReader reader(files);
+  sayHowItIs(in, reader.info());
+  std::vector<std::string> inputs;
+  for (const std::filesystem::path& path : files.paths()) inputs.push_back(path.string());
+  mcap::WriterOptions options = optionsFor(request.out, inputs);
+  options.profile = reader.info().header.profile;
   mcap::Copier copy(request.out.file, options);
-  for (const mcap::Metadata& one : reader->metadata()) copy.metadata(withoutClaim(one.name), one.values);
-  for (const mcap::AttachmentIndex& index : reader->attachments()) {
-    copy.attachment(withoutClaim(index.name), index, reader->readAttachment(index));
-  }
-  {
-    ProgressLine line;
-    const std::uint64_t begin = std::max(filter.start_time_ns, reader->statistics().start_time_ns);
-    const std::uint64_t end = std::min(filter.end_time_ns, reader->statistics().end_time_ns);
-    const auto span = static_cast<double>(end > begin ? end - begin : 1);
-    reader->forEachMessage(filter, [&](const mcap::MessageView& message) {
-      copy.message(message);
-      if (copy.messages() % 0x4000 != 0) return;
-      const double part = static_cast<double>(message.log_time_ns - begin) / span;
-      line.show(fmt::format("cutting {} {:3.0f} %", progressBar(part), 100.0 * part));
-    });
-  }
-  const std::uint64_t kept = copy.messages(), of = reader->statistics().message_count;
-  if (kept == 0) {
+  copyExtras(reader, copy);
+  const Copied copied = copyMessages(request, reader, in, copy);
+  const std::uint64_t of = reader.statistics().message_count;
+  if (copied.kept == 0) {
     throw UsageError(fmt::format("expected messages in these topics and times, found none: {} has {} in {:.6f} s", in,
-                                 of, mcap::durationOf(*reader)));
+                                 of, mcap::durationOf(reader)));
   }
-  copy.metadata("baton.cut", cutMetadata(request.what, kept, of));
+  copy.metadata("baton.cut", cutMetadata(request.what, in, copied.kept, of));
+  if (copied.repeated > 0) copy.metadata(mcap::kRepeatedRecord, mcap::repeatedRecord(copied.repeated));
   copy.finish();
   if (request.json) {
-    std::puts(toText({{"file", in}, {"out", request.out.file}, {"messages", kept}, {"left_out", of - kept}}).c_str());
+    std::puts(toText({{"file", in},
+                      {"out", request.out.file},
+                      {"messages", copied.kept},
+                      {"left_out", of - copied.kept},
+                      {"latched", copied.repeated}})
+                  .c_str());
   } else {
-    fmt::print("cut         {}: {} of {} messages of {}\n", request.out.file, kept, of, in);
+    fmt::print("cut         {}: {} of {} messages of {}\n", request.out.file, copied.kept, of, in);
+    if (copied.repeated > 0) {
+      fmt::print("            and in front {} from before, as a late joiner would have been given them\n",
+                 copied.repeated);
+    }
   }
-  return ExitCode::kOk;
+  return exit_code;
 }
 
 }  // namespace
@@ -88,13 +156,22 @@ void addBagCut(CLI::App& bag, ExitCode& exit_code) {
   const auto request = std::make_shared<CutRequest>();
   CLI::App* command = bag.add_subcommand("cut", "a part of a recording: a time, some topics");
   command->footer(
+      std::string(kRangeHelp) +
+      "A cut that begins in the middle begins with what a late joiner would have been given there: of each writer of "
+      "a\n"
+      "transient-local topic the latest samples, as many as it keeps (of each instance, where the keys are known), "
+      "with\n"
+      "the log time of the beginning. The metadata record baton.latched counts them, and `bag verify` does not.\n"
       "Metadata and attachments are kept. The metadata record baton.cut says what was left out; such a file does not\n"
       "claim to be complete, the certificate of the whole is kept under the name original_...\n"
       "Exit codes: 0 done; 1 OUT could not be written; 2 wrong input, nothing to keep, damaged or not a recording\n"
       "(`bag recover` makes a sound one); 3 FILE cannot be opened, or OUT is there already or cannot be made.");
-  addTopicSelection(*command, request->what);
-  addTarget(*command, request->out);
-  addTimeSelection(*command, request->what);
+  addTopicSelection(*command, request->what, "files",
+                    "recordings (MCAP) or folders of them, read as one, and then the recording to make");
+  addOverwrite(*command, request->out);
+  addRange(*command, request->what.range);
+  command->add_flag("--no-latched", request->without_latched,
+                    "without the samples from before that transient-local topics give to late joiners");
   command->add_flag("--json", request->json, "as a JSON object");
   command->callback([request, &exit_code] { exit_code = cut(*request); });
 }

@@ -10,6 +10,7 @@
 #include "base/text.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
+#include "runtime/recording_files.hpp"
 
 namespace baton {
 namespace {
@@ -47,7 +48,8 @@ void printText(const DiffRequest& request, const RecordingDiff& diff) {
     service_width = std::max(service_width, escaped(key.second).size());
   }
   const auto first = diff.firstDifferent();
-  fmt::print("{}: A {}, B {}\n{}", diff.isSame() ? "same" : "different", request.a, request.b, takesText(diff));
+  fmt::print("{}: A {}, B {}\n{}", diff.isSame() ? "same" : "different", request.a.string(), request.b.string(),
+             takesText(diff));
   if (first) {
     fmt::print("first       {}, {}\n", nameOf(*first), textOf(*diff.streams.at(*first).first));
   }
@@ -82,18 +84,27 @@ nlohmann::ordered_json toJson(const DiffRequest& request, const RecordingDiff& d
     }
     streams.push_back(row);
   }
-  nlohmann::ordered_json json{{"a", request.a},
-                              {"b", request.b},
-                              {"same", diff.isSame()},
-                              {"first", nullptr},
-                              {"left_out", diff.left_out},
-                              {"resets_before", diff.resets_before},
+  nlohmann::ordered_json json{{"a", request.a.string()},   {"b", request.b.string()},
+                              {"same", diff.isSame()},     {"first", nullptr},
+                              {"left_out", diff.left_out}, {"resets_before", diff.resets_before},
                               {"streams", streams}};
   if (const auto first = diff.firstDifferent()) json["first"] = {{"topic", first->first}, {"service", first->second}};
   return json;
 }
 
-ExitCode diff(const DiffRequest& request, bool json) {
+/// The command line.
+struct DiffWish {
+  std::string a, b;  // files or folders
+  bool with_parts = false;
+  DiffRequest request;
+  bool json = false;
+};
+
+ExitCode diff(DiffWish& wish) {
+  DiffRequest& request = wish.request;
+  ExitCode holes = ExitCode::kOk;
+  request.a = findRecording({.given = {wish.a}, .with_parts = wish.with_parts}, holes);
+  request.b = findRecording({.given = {wish.b}, .with_parts = wish.with_parts}, holes);
   RecordingDiff found;
   {
     ProgressLine line;
@@ -102,19 +113,19 @@ ExitCode diff(const DiffRequest& request, bool json) {
   for (const std::string& warning : found.warnings) {
     std::fprintf(stderr, "baton: warning: %s\n", escaped(warning).c_str());
   }
-  if (json) {
+  if (wish.json) {
     std::puts(toText(toJson(request, found)).c_str());
   } else {
     printText(request, found);
   }
-  return found.isSame() ? ExitCode::kOk : ExitCode::kFailed;
+  return found.isSame() ? holes : ExitCode::kFailed;
 }
 
 }  // namespace
 
 void addBagDiff(CLI::App& bag, ExitCode& exit_code) {
-  const auto request = std::make_shared<DiffRequest>();
-  const auto json = std::make_shared<bool>(false);
+  const auto wish = std::make_shared<DiffWish>();
+  DiffRequest* request = &wish->request;
   CLI::App* command = bag.add_subcommand("diff", "whether two recordings are of the same, sample by sample");
   command->footer(
       "Samples are paired by topic, service and step; by their order where messages have no step. Unless --topics "
@@ -131,8 +142,9 @@ void addBagDiff(CLI::App& bag, ExitCode& exit_code) {
       "Memory: a chunk of each recording, those that overlap it in time, and the samples that wait for their "
       "counterpart.\n"
       "Exit codes: 0 the same, 1 different, 2 wrong input or not a recording, 3 cannot be opened.");
-  command->add_option("a", request->a, "recording (MCAP)")->required();
-  command->add_option("b", request->b, "another one")->required();
+  command->add_option("a", wish->a, kOneRecordingText)->required();
+  command->add_option("b", wish->b, "another one")->required();
+  addParts(*command, wish->with_parts);
   command->add_option("--topics", request->topics, "only these topics: a,b,c")->delimiter(',')->allow_extra_args(false);
   command->add_option("--ignore", request->ignored, "topics, topic.field or field, not to compare")->delimiter(',');
   command
@@ -140,8 +152,8 @@ void addBagDiff(CLI::App& bag, ExitCode& exit_code) {
                    "how far numbers may be apart, in their unit: everywhere, or as field=1e-9, topic.field=1e-9")
       ->delimiter(',');
   command->add_flag("--all-takes", request->all_takes, "the takes before a reset too");
-  command->add_flag("--json", *json, "as a JSON object");
-  command->callback([request, json, &exit_code] { exit_code = diff(*request, *json); });
+  command->add_flag("--json", wish->json, "as a JSON object");
+  command->callback([wish, &exit_code] { exit_code = diff(*wish); });
 }
 
 }  // namespace baton

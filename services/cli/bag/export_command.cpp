@@ -172,6 +172,7 @@ void addBagExport(CLI::App& bag, ExitCode& exit_code) {
   const auto request = std::make_shared<ExportRequest>();
   CLI::App* command = bag.add_subcommand("export", "the messages as tables (CSV) or JSON lines, one file a topic");
   command->footer(
+      std::string(kRangeHelp) +
       "All writers of a topic share its file, in order of log time; the columns service and writer tell them apart.\n"
       "CSV (RFC 4180): a column for each number, string and enum, named as in the message with its unit behind it,\n"
       "\"tip_position[0] [m]\"; sequences have as many columns as the longest in the recording, and cells are empty "
@@ -183,7 +184,7 @@ void addBagExport(CLI::App& bag, ExitCode& exit_code) {
       "Exit codes: 0 all was exported, 1 some of it is cut, damaged or none of its type and the rest was exported,\n"
       "2 wrong input, not a recording, or a file that is there already, 3 cannot be opened or written.");
   addTopicSelection(*command, request->selection);
-  addTimeSelection(*command, request->selection);
+  addRange(*command, request->selection.range);
   CLI::Option* csv = command->add_flag("--csv", request->csv, "tables, TOPIC.csv");
   command->add_flag("--json", request->json, "JSON lines, TOPIC.jsonl")->excludes(csv);
   command->add_option("--out", request->folder, "folder for the files; made when it is not there")->required();

@@ -10,19 +10,21 @@
 #include "dds/topics.hpp"
 #include "report/recording.hpp"
 #include "runtime/json.hpp"
+#include "runtime/recording_files.hpp"
 
 namespace baton {
 namespace {
 
 struct HashRequest {
-  std::string file;
-  std::string other;  // to compare with
+  std::string recording;  // a file or a folder
+  std::string other;      // to compare with
+  bool with_parts = false;
   bool json = false;
 };
 
 /// Of a recording that was made without one of the loop's topics nothing can be said.
-HashedRun hashWholeRun(const std::string& file) {
-  const mcap::Reader reader(file);
+HashedRun hashWholeRun(const mcap::FileList& file) {
+  const mcap::JoinedReader reader(file);
   for (const char* topic : {dds::topics::kJointCommand.name, dds::topics::kContact.name}) {
     expectNotLeftOut(reader, topic, file);
   }
@@ -31,9 +33,11 @@ HashedRun hashWholeRun(const std::string& file) {
 
 /// Prints the hash and says whether the payloads give it.
 ExitCode hash(const HashRequest& request) {
-  const HashedRun run = hashWholeRun(request.file);
+  ExitCode holes = ExitCode::kOk;
+  const mcap::FileList file = findRecording({.given = {request.recording}, .with_parts = request.with_parts}, holes);
+  const HashedRun run = hashWholeRun(file);
   const std::optional<std::uint64_t> broken = run.firstBroken();
-  nlohmann::ordered_json json{{"file", request.file},
+  nlohmann::ordered_json json{{"file", file.string()},
                               {"hash", std::to_string(run.hash())},
                               {"first_step", run.steps.begin()->first},
                               {"last_step", run.steps.rbegin()->first},
@@ -43,20 +47,22 @@ ExitCode hash(const HashRequest& request) {
                                : "the recorded payloads give it, step by step";
   bool is_good = !broken;
   if (!request.other.empty()) {
-    const HashedRun other = hashWholeRun(request.other);
+    const mcap::FileList other_file =
+        findRecording({.given = {request.other}, .with_parts = request.with_parts}, holes);
+    const HashedRun other = hashWholeRun(other_file);
     const Comparison comparison = compare(run, other);
     const std::optional<Parting>& parting = comparison.parting;
     const bool is_same = !parting && comparison.steps > 0 && !other.firstBroken();
-    json["same_as"] = {{"file", request.other}, {"same", is_same}, {"steps_compared", comparison.steps}};
+    json["same_as"] = {{"file", other_file.string()}, {"same", is_same}, {"steps_compared", comparison.steps}};
     if (parting) {
       json["same_as"]["first_different_step"] = parting->step;
       json["same_as"]["topic"] = parting->topic;
-      verdict += "\ndiffers from " + request.other + " first at step " + std::to_string(parting->step) + " in " +
+      verdict += "\ndiffers from " + other_file.string() + " first at step " + std::to_string(parting->step) + " in " +
                  parting->topic;
     } else {
       verdict += "\n" +
-                 (comparison.steps == 0 ? "no step in common with " + request.other
-                                        : "the same as " + request.other + " in the " +
+                 (comparison.steps == 0 ? "no step in common with " + other_file.string()
+                                        : "the same as " + other_file.string() + " in the " +
                                               std::to_string(comparison.steps) + " steps that both have") +
                  (other.firstBroken() ? ", whose payloads do not give its own hash" : "");
     }
@@ -68,7 +74,7 @@ ExitCode hash(const HashRequest& request) {
     std::printf("%s of steps %s to %s\n%s\n", json["hash"].get<std::string>().c_str(),
                 json["first_step"].dump().c_str(), json["last_step"].dump().c_str(), verdict.c_str());
   }
-  return is_good ? ExitCode::kOk : ExitCode::kFailed;
+  return is_good ? holes : ExitCode::kFailed;
 }
 
 }  // namespace
@@ -82,8 +88,9 @@ void addBagHash(CLI::App& bag, ExitCode& exit_code) {
       "Exit codes: 0 the payloads give the hash that the run had, and the other file has the same; 1 otherwise, with "
       "the\n"
       "first step; 2 not the recording of a run, or one without a topic of these; 3 cannot be opened.");
-  command->add_option("file", request->file, "recording of a run (MCAP)")->required();
+  command->add_option("file", request->recording, kOneRecordingText)->required();
   command->add_option("other", request->other, "another one, to compare step by step");
+  addParts(*command, request->with_parts);
   command->add_flag("--json", request->json, "as a JSON object");
   command->callback([request, &exit_code] { exit_code = hash(*request); });
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -21,6 +22,7 @@
 #include "dds/types.hpp"
 #include "mcap/lookup.hpp"
 #include "runtime/json.hpp"
+#include "runtime/recording_files.hpp"
 
 namespace baton {
 namespace {
@@ -46,6 +48,7 @@ struct BagSummary {
   mcap::FileInfo info;
   mcap::StringMap run;                         // "baton.run": what it is a recording of
   std::optional<mcap::StringMap> certificate;  // "baton.certificate"
+  std::vector<std::string> holes;              // parts that are missing between the files
   std::string next_part;                       // "baton.part_end": the file that goes on with it
   std::vector<std::string> damage;
   std::uint64_t messages = 0;  // that could be read, as all that follows
@@ -68,6 +71,7 @@ RecordingVerdict verdictOn(const BagSummary& bag) {
   if (!bag.info.is_complete) return RecordingVerdict::kCut;
   // What a certificate is of is not this file as it is.
   if (!bag.info.contradictions.empty() && (bag.certificate || !bag.run.empty())) return RecordingVerdict::kIncomplete;
+  if (!bag.holes.empty()) return RecordingVerdict::kIncomplete;
   // A finished file of somebody else has none; the parts of one recording have one, in the last.
   const bool needs_certificate = !bag.run.empty() && bag.next_part.empty();
   const bool is_certified = bag.certificate && valueOf(*bag.certificate, "complete") == "true";
@@ -82,13 +86,14 @@ std::string reasonFor(const BagSummary& bag) {
   if (verdictOn(bag) == RecordingVerdict::kIncomplete && !bag.info.contradictions.empty()) {
     return "it contradicts itself, so that no certificate holds for it";
   }
+  if (!bag.holes.empty()) return fmt::format("{}", fmt::join(bag.holes, "; "));
   if (bag.certificate) return "by its certificate: " + valueOf(*bag.certificate, "summary");
   if (!bag.next_part.empty()) return "a part of a recording that goes on in " + bag.next_part;
   return bag.run.empty() ? "finished; it was not recorded by Baton and has no certificate" : "it has no certificate";
 }
 
 /// Reads all messages, so that every CRC is checked and every gap is found.
-void readMessages(const mcap::Reader& reader, BagSummary& bag) {
+void readMessages(const mcap::Source& reader, BagSummary& bag) {
   std::map<mcap::ChannelId, SequenceGaps*> counted;  // null: of one whose numbers count something else
   std::map<std::pair<TopicSummary*, std::string>, SequenceGaps> writers;
   reader.forEachMessage({.order = mcap::MessageFilter::Order::kFile}, [&](const mcap::MessageView& message) {
@@ -117,22 +122,26 @@ void readMessages(const mcap::Reader& reader, BagSummary& bag) {
   for (const auto& [key, gaps] : writers) key.first->gaps = key.first->gaps.value_or(0) + gaps.missing();
 }
 
-BagSummary summarize(const std::string& file) {
+BagSummary summarize(const RecordingWish& wish) {
   BagSummary bag;
-  bag.file = file;
-  std::set<mcap::Damage> damage;  // each pass comes across the same
-  const mcap::Reader reader(file, {.on_damage = [&damage](const mcap::Damage& found) { damage.insert(found); }});
+  const FoundRecording recording = findRecording(wish);
+  bag.file = recording.files.string();
+  bag.holes = recording.missing;
+  const bool is_one = recording.files.paths().size() == 1;
+  const mcap::JoinedReader reader(recording.files, [&](const std::filesystem::path& file, const mcap::Damage& found) {
+    bag.damage.push_back((is_one ? "" : file.string() + ": ") + mcap::describe(found));
+  });
   bag.info = reader.info();
   bag.attachments = reader.attachments();
   readMessages(reader, bag);
-  for (const mcap::Damage& found : damage) bag.damage.push_back(mcap::describe(found));
   try {
     for (const mcap::Metadata& metadata : reader.metadata()) {
       if (metadata.name == "baton.run") bag.run = metadata.values;
       if (metadata.name == "baton.certificate") bag.certificate = metadata.values;
+      if (metadata.name == "baton.part") bag.next_part.clear();
       if (metadata.name == "baton.part_end") bag.next_part = valueOf(metadata.values, "next");
     }
-    for (const mcap::AttachmentIndex& attachment : bag.attachments) (void)reader.readAttachment(attachment);
+    for (const mcap::AttachmentIndex& attachment : reader.attachments()) (void)reader.readAttachment(attachment);
   } catch (const mcap::FormatError& error) {
     bag.damage.emplace_back(error.what());
   }
@@ -224,7 +233,7 @@ nlohmann::ordered_json toJson(const BagSummary& bag) {
 }
 
 struct InfoRequest {
-  std::string file;
+  RecordingWish recording;
   bool json = false;
 };
 
@@ -238,10 +247,10 @@ void addBagInfo(CLI::App& bag, ExitCode& exit_code) {
       "where\n"
       "the file says that its sequence numbers are a DDS writer's; `-` where they may be anything.\n"
       "Exit codes: 0 complete, 1 incomplete or cut, 2 damaged or not a recording, 3 cannot be opened.");
-  command->add_option("file", request->file, "recording (MCAP)")->required();
+  addRecording(*command, request->recording);
   command->add_flag("--json", request->json, "as a JSON object");
   command->callback([request, &exit_code] {
-    const BagSummary summary = summarize(request->file);
+    const BagSummary summary = summarize(request->recording);
     if (request->json) {
       // Text in a recording may come from anywhere.
       std::puts(toText(toJson(summary)).c_str());

@@ -13,9 +13,11 @@
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
 #include "dds/hash.hpp"
+#include "mcap/repeated.hpp"
 #include "report/recording.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
+#include "runtime/recording_files.hpp"
 
 namespace baton {
 namespace {
@@ -32,6 +34,15 @@ struct Source {
   std::unique_ptr<mcap::Reader> reader;
   std::unique_ptr<mcap::MessageCursor> cursor;
   mcap::MessageView next;
+  bool is_first_of_run = true;  // of the files that have the same run
+  mcap::Repeated repeated{};    // what it begins with from before, when a file before it may have that
+
+  [[nodiscard]] bool advance() {
+    while (cursor->next(next)) {
+      if (!repeated.takes(next)) return true;
+    }
+    return false;
+  }
 };
 
 std::vector<Source> openSources(const std::vector<std::string>& files) {
@@ -42,6 +53,15 @@ std::vector<Source> openSources(const std::vector<std::string>& files) {
     Source source{.label = stem, .reader = openForCopy(file), .cursor = nullptr, .next = {}};
     for (int i = 2; !labels.insert(source.label).second; ++i) source.label = fmt::format("{}-{}", stem, i);
     sources.push_back(std::move(source));
+  }
+  for (Source& source : sources) {
+    const std::string run = metadataValue(*source.reader, "baton.run", "run");
+    const auto begin_ns = [](const Source& one) { return one.reader->statistics().start_time_ns; };
+    source.is_first_of_run =
+        run.empty() || std::ranges::none_of(sources, [&](const Source& other) {
+          return begin_ns(other) < begin_ns(source) && metadataValue(*other.reader, "baton.run", "run") == run;
+        });
+    if (!source.is_first_of_run) source.repeated = mcap::Repeated(*source.reader);
   }
   return sources;
 }
@@ -89,6 +109,7 @@ void forEachExtra(const std::vector<Source>& sources, bool is_whole, mcap::Copie
   for (const Source& source : sources) {
     const auto nameOf = [&](const std::string& name) { return is_whole ? name : withoutClaim(name); };
     for (const mcap::Metadata& one : source.reader->metadata()) {
+      if (one.name == mcap::kRepeatedRecord && !source.is_first_of_run) continue;
       f(source, "metadata", nameOf(one.name), hashOf(one.values),
         [&](const std::string& name) { copy->metadata(name, one.values); });
     }
@@ -124,7 +145,7 @@ void copyMessages(std::vector<Source>& sources, mcap::Copier& copy) {
     copy.channels(*source.reader);
     total += source.reader->statistics().message_count;
     source.cursor = std::make_unique<mcap::MessageCursor>(source.reader->messages());
-    if (source.cursor->next(source.next)) waiting.push_back(&source);
+    if (source.advance()) waiting.push_back(&source);
   }
   std::make_heap(waiting.begin(), waiting.end(), later);
   ProgressLine line;
@@ -136,7 +157,7 @@ void copyMessages(std::vector<Source>& sources, mcap::Copier& copy) {
       const double part = static_cast<double>(copy.messages()) / static_cast<double>(total);
       line.show(fmt::format("merging {} {:3.0f} %", progressBar(part), 100.0 * part));
     }
-    if (first.cursor->next(first.next)) {
+    if (first.advance()) {
       std::push_heap(waiting.begin(), waiting.end(), later);
     } else {
       waiting.pop_back();
@@ -145,13 +166,14 @@ void copyMessages(std::vector<Source>& sources, mcap::Copier& copy) {
 }
 
 ExitCode merge(const MergeRequest& request) {
-  std::vector<Source> sources = openSources(request.in);
-  mcap::Copier copy(request.out.file, optionsFor(request.out, request.in));
+  const std::vector<std::string> files = filesOf({.given = request.in});
+  std::vector<Source> sources = openSources(files);
+  mcap::Copier copy(request.out.file, optionsFor(request.out, files));
   copyExtras(sources, copy);
   copyMessages(sources, copy);
   copy.finish();
   if (request.json) {
-    std::puts(toText({{"out", request.out.file}, {"files", request.in}, {"messages", copy.messages()}}).c_str());
+    std::puts(toText({{"out", request.out.file}, {"files", files}, {"messages", copy.messages()}}).c_str());
   } else {
     fmt::print("merged      {} files into {}: {} messages\n", sources.size(), request.out.file, copy.messages());
   }
@@ -171,7 +193,7 @@ void addBagMerge(CLI::App& bag, ExitCode& exit_code) {
       "one);\n"
       "3 a file cannot be opened, or OUT is there already or cannot be made.");
   addTarget(*command, request->out);
-  command->add_option("in", request->in, "recordings (MCAP)")->required();
+  command->add_option("in", request->in, "recordings (MCAP), or folders of them")->required();
   command->add_flag("--json", request->json, "as a JSON object");
   command->callback([request, &exit_code] { exit_code = merge(*request); });
 }

@@ -40,21 +40,22 @@ struct Stream {
 
 /// One of the two files.
 struct Side {
-  explicit Side(const std::string& file, std::vector<std::string>& warnings)
-      : reader(file), types([&, file](const std::string& problem) { warnings.push_back(file + ": " + problem); }) {
-    if (!reader.info().is_complete) warnings.push_back(file + ": it was cut: " + reader.info().problem);
-    for (const std::string& text : reader.info().contradictions) warnings.push_back(file + ": " + text);
+  explicit Side(const mcap::FileList& file, std::vector<std::string>& warnings)
+      : reader(file),
+        types([&, name = file.string()](const std::string& problem) { warnings.push_back(name + ": " + problem); }) {
+    if (!reader.info().is_complete) warnings.push_back(file.string() + ": it was cut: " + reader.info().problem);
+    for (const std::string& text : reader.info().contradictions) warnings.push_back(file.string() + ": " + text);
   }
   [[nodiscard]] const mcap::Schema* schemaOf(const mcap::Channel& channel) const {
     const auto found = reader.schemas().find(channel.schema_id);
     return found == reader.schemas().end() ? nullptr : &found->second;
   }
 
-  mcap::Reader reader;
+  mcap::JoinedReader reader;
   RecordedTypes types;
   std::map<mcap::ChannelId, Stream*> streams;  // those compared
   std::map<mcap::ChannelId, FieldRules> rules;
-  std::optional<mcap::MessageCursor> messages;
+  std::optional<mcap::JoinedCursor> messages;
   bool is_over = false;
   std::size_t waiting_bytes = 0;
 };

@@ -20,12 +20,13 @@
 
 #include "bag/field_rules.hpp"
 #include "bag/message_diff.hpp"
+#include "mcap/joined_reader.hpp"
 
 namespace baton {
 
 struct DiffRequest {
-  std::string a{};
-  std::string b{};
+  mcap::FileList a{};
+  mcap::FileList b{};
   std::vector<std::string> topics{};      // empty: those of the control loop; without any, all but *_status
   std::vector<std::string> ignored{};     // as RuleSet
   std::vector<std::string> tolerances{};  // as RuleSet

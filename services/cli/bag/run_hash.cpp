@@ -32,8 +32,8 @@ std::optional<std::uint64_t> HashedRun::firstBroken() const {
   return std::nullopt;
 }
 
-HashedRun hashRun(const std::filesystem::path& file) {
-  const mcap::Reader reader(file);
+HashedRun hashRun(const mcap::FileList& file) {
+  const mcap::JoinedReader reader(file);
   expectTopic(reader, dds::topics::kPlantState.name, file);
   const std::uint64_t begin_ns = lastTakeBegin(reader);
   HashedRun run;

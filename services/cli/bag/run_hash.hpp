@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 
 #include "dds/hash.hpp"
+#include "mcap/joined_reader.hpp"
 
 namespace baton {
 
@@ -29,7 +29,7 @@ struct HashedRun {
 };
 
 /// Throws UsageError when the file has no states, and what reading a recording throws.
-[[nodiscard]] HashedRun hashRun(const std::filesystem::path& file);
+[[nodiscard]] HashedRun hashRun(const mcap::FileList& file);
 
 /// Where two runs part: the first payload that differs. One that only one of the two has is no difference by itself: a
 /// process may have died before it sent it, and the next state says whether the plant used it.

@@ -1,7 +1,5 @@
 #include "bag/selection.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -9,7 +7,6 @@
 #include "base/text.hpp"
 #include "control/nearest_name.hpp"
 #include "mcap/lookup.hpp"
-#include "runtime/command_line.hpp"
 
 namespace baton {
 namespace {
@@ -18,57 +15,44 @@ constexpr std::uint64_t kShowSelectionEvery = 4096;
 
 }  // namespace
 
-void addTopicSelection(CLI::App& command, Selection& selection) {
-  command.add_option("file", selection.file, "recording (MCAP)")->required();
+void addTopicSelection(CLI::App& command, Selection& selection, const char* name, const char* text) {
+  addRecording(command, selection.recording, name, text);
   command.add_option("--topics", selection.topics, "only these topics: a,b,c")->delimiter(',')->allow_extra_args(false);
 }
 
-void addTimeSelection(CLI::App& command, Selection& selection) {
-  command.add_option("--from", selection.from_s, "start here, in s of log time from the recording's first message")
-      ->check(notNegative());
-  command.add_option("--to", selection.to_s, "end here, likewise; a message at that time is taken")
-      ->check(notNegative());
-}
-
-mcap::MessageFilter filterOf(const Selection& selection, const mcap::Reader& reader) {
+mcap::MessageFilter filterOf(const Selection& selection, const RecordingRange& range, const mcap::Source& reader) {
   const std::vector<std::string> known = mcap::topicNames(reader);
   for (const std::string& topic : selection.topics) {
     if (!std::ranges::binary_search(known, topic)) throw UsageError(escaped(unknownName("topic", topic, known)));
   }
-  mcap::MessageFilter filter{.topics = selection.topics};
-  if (selection.from_s) filter.start_time_ns = mcap::logTimeAt(reader, *selection.from_s);
-  if (selection.to_s) filter.end_time_ns = mcap::logTimeAt(reader, *selection.to_s);
-  if (filter.end_time_ns < filter.start_time_ns) throw UsageError("--to: expected a time that is not before --from");
-  if (filter.start_time_ns > reader.statistics().end_time_ns) {
-    throw UsageError(
-        fmt::format("--from: expected a time in {}, which ends {:.6f} s behind its first message, found {}",
-                    selection.file, mcap::durationOf(reader), *selection.from_s));
-  }
-  return filter;
+  return {.topics = selection.topics, .start_time_ns = range.startTime(), .end_time_ns = range.endTime()};
 }
 
 SelectedMessages::SelectedMessages(const Selection& selection)
-    : file_(selection.file), reader_(selection.file, {.on_damage = [this](const mcap::Damage& damage) {
-                                       if (damage_.insert(damage).second)
-                                         complain(mcap::describe(damage) + "; left out");
-                                     }}) {
+    : found_(findRecording(selection.recording)),
+      reader_(found_.files,
+              [this](const std::filesystem::path& file, const mcap::Damage& damage) {
+                complain(file.string(), mcap::describe(damage) + "; left out");
+              }),
+      range_(selection.range, reader_, found_.files.string()),
+      filter_(filterOf(selection, range_, reader_)) {
+  for (const std::string& hole : found_.missing) complain(hole);
   const mcap::FileInfo& info = reader_.info();
   if (!info.is_complete) {
     complain("it was cut: " + info.problem);
   } else if (!info.problem.empty() && !info.is_unindexed) {
-    warn(info.problem);
+    warn(found_.files.string(), info.problem);
   }
-  for (const std::string& text : info.contradictions) warn(text);
-  filter_ = filterOf(selection, reader_);
+  for (const std::string& text : info.contradictions) warn(found_.files.string(), text);
 }
 
-void SelectedMessages::warn(const std::string& problem) {
+void SelectedMessages::warn(const std::string& file, const std::string& problem) {
   progress_.show("");
-  std::fprintf(stderr, "baton: warning: %s: %s\n", file_.c_str(), escaped(problem).c_str());
+  std::fprintf(stderr, "baton: warning: %s: %s\n", file.c_str(), escaped(problem).c_str());
 }
 
-void SelectedMessages::complain(const std::string& problem) {
-  warn(problem);
+void SelectedMessages::complain(const std::string& file, const std::string& problem) {
+  warn(file, problem);
   has_problem_ = true;
 }
 
@@ -87,9 +71,11 @@ std::uint64_t SelectedMessages::expectedMessages() const {
 
 void SelectedMessages::forEach(const std::string& doing, const std::function<bool(const mcap::MessageView&)>& use) {
   const auto expected = static_cast<double>(std::max<std::uint64_t>(1, expectedMessages()));
-  mcap::MessageCursor messages = reader_.messages(filter_);
+  mcap::JoinedCursor messages = reader_.messages(filter_);
   std::uint64_t done = 0;
-  for (mcap::MessageView message; messages.next(message) && use(message);) {
+  for (mcap::MessageView message; messages.next(message);) {
+    if (!range_.takes(message)) continue;
+    if (!use(message)) break;
     if (++done % kShowSelectionEvery != 0 || doing.empty()) continue;
     const double part = std::min(1.0, static_cast<double>(done) / expected);
     progress_.show(doing + " " + progressBar(part) + " " + std::to_string(done) + " messages");

@@ -14,6 +14,7 @@
 #include "base/text.hpp"
 #include "mcap/lookup.hpp"
 #include "mcap/reader.hpp"
+#include "mcap/repeated.hpp"
 #include "report/recording.hpp"
 #include "runtime/admission.hpp"
 #include "runtime/scenario.hpp"
@@ -28,6 +29,7 @@ struct Part {
   std::set<mcap::Damage> damage{};  // each pass comes across the same
   std::string unreadable{};         // the first of its metadata and attachments that is; empty: none
   std::unique_ptr<mcap::Reader> reader{};
+  mcap::Repeated repeated{};        // what it begins with from before, which is booked where it was recorded
   std::string run{};                // empty: not recorded by Baton
   std::optional<unsigned> index{};  // in a recording that was split
   std::string next{};               // the file in which it goes on; empty: this is the last, or it was cut
@@ -44,6 +46,7 @@ void openPart(Part& part, const std::function<void(double)>& progress) {
   try {
     part.run = metadataValue(*part.reader, "baton.run", "run");
     part.index = partIndex(*part.reader);
+    part.repeated = mcap::Repeated(*part.reader);
     // Parts that were merged may have kept the word of one of them.
     if (part.index) part.next = metadataValue(*part.reader, "baton.part_end", "next");
     for (const mcap::AttachmentIndex& attachment : part.reader->attachments()) {
@@ -111,6 +114,7 @@ class Booking {
     std::future<std::optional<bool>> crc = std::async(std::launch::async, [&] { return reader.dataCrcMatches(); });
     accounts_.clear();
     result_.log_times.nextFile();
+    from_before_ = part.repeated;
     reader.forEachMessage({.order = mcap::MessageFilter::Order::kFile},
                           [this](const mcap::MessageView& message) { book(message); });
     if (repeated_ > 0) {
@@ -125,15 +129,16 @@ class Booking {
  private:
   struct Account {
     Ledger::Stream* stream = nullptr;
-    std::uint64_t count = 0;  // in this part
+    bool is_known = false;  // whether there is one
   };
 
   void book(const mcap::MessageView& message) {
     const auto id = static_cast<std::size_t>(message.channel->id);
     if (id >= accounts_.size()) accounts_.resize(id + 1);
     Account& account = accounts_[id];
+    if (from_before_.takes(message)) return;
     result_.log_times.add(message.channel->id, message.log_time_ns);
-    if (account.count++ == 0) account.stream = streamOf(*message.channel);
+    if (!std::exchange(account.is_known, true)) account.stream = streamOf(*message.channel);
     if (++result_.messages % 0x4000 == 0) {
       progress_(static_cast<double>(result_.messages) / static_cast<double>(expected_));
     }
@@ -155,6 +160,7 @@ class Booking {
   const std::function<void(double)>& progress_;
   std::uint64_t expected_ = 0;
   std::uint64_t repeated_ = 0;
+  mcap::Repeated from_before_;     // of the present part
   std::vector<Account> accounts_;  // [channel id], of the present part
 };
 

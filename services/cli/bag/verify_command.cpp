@@ -10,12 +10,13 @@
 #include "base/text.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
+#include "runtime/recording_files.hpp"
 
 namespace baton {
 namespace {
 
 struct VerifyRequest {
-  std::vector<std::string> files;
+  RecordingWish recording;
   bool json = false;
 };
 
@@ -58,7 +59,7 @@ nlohmann::ordered_json toJson(const Verification& found) {
 
 ExitCode verify(const VerifyRequest& request) {
   ProgressLine line;
-  const Verification found = verifyRecording(request.files, [&line](double part) {
+  const Verification found = verifyRecording(filesOf(request.recording), [&line](double part) {
     line.show(fmt::format("verifying {} {:3.0f} %", progressBar(part), 100.0 * part));
   });
   line.clear();
@@ -80,8 +81,8 @@ void addBagVerify(CLI::App& bag, ExitCode& exit_code) {
       "with what the services say they sent and with the certificate in the file.\n"
       "Exit codes: 0 proven complete; 1 incomplete, cut or without a certificate; 2 damaged or not a recording;\n"
       "3 cannot be opened.");
-  command->add_option("files", request->files, "a recording (MCAP); several: the parts of one that was split")
-      ->required();
+  addRecording(*command, request->recording, "files",
+               "a recording (MCAP); several, or a folder of them: the parts of one that was split");
   command->add_flag("--json", request->json, "as a JSON object, with every stream");
   command->callback([request, &exit_code] { exit_code = verify(*request); });
 }

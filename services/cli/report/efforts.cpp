@@ -93,12 +93,12 @@ int controllerIndex(const Scenario& scenario, std::string_view name) {
   return found == all.end() ? RecordedEfforts::kUnknown : static_cast<int>(found - all.begin());
 }
 
-RecordedEfforts readEfforts(const std::filesystem::path& file) { return readEfforts(file, readTrace(file)); }
+RecordedEfforts readEfforts(const mcap::FileList& file) { return readEfforts(file, readTrace(file)); }
 
-RecordedEfforts readEfforts(const std::filesystem::path& file, Trace trace) {
+RecordedEfforts readEfforts(const mcap::FileList& file, Trace trace) {
   RecordedEfforts run;
   run.trace = std::move(trace);
-  const mcap::Reader reader(file);
+  const mcap::JoinedReader reader(file);
   if (!reader.info().is_complete) run.cut = reader.info().problem;
   EffortFiller fill(run);
   const auto read = [&]<class M>(const mcap::MessageView& view, const dds::Topic<M>& topic) {

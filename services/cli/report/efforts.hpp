@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,9 +32,9 @@ struct RecordedEfforts {
 };
 
 /// Throws as readTrace does.
-[[nodiscard]] RecordedEfforts readEfforts(const std::filesystem::path& file);
+[[nodiscard]] RecordedEfforts readEfforts(const mcap::FileList& file);
 /// The same with the file's trace, which has been read already.
-[[nodiscard]] RecordedEfforts readEfforts(const std::filesystem::path& file, Trace trace);
+[[nodiscard]] RecordedEfforts readEfforts(const mcap::FileList& file, Trace trace);
 
 /// The scenario's controller called so: its index, or kUnknown.
 [[nodiscard]] int controllerIndex(const Scenario& scenario, std::string_view name);

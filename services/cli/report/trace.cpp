@@ -19,8 +19,7 @@ struct Stretch {
 
 /// Throws UsageError when there are no states, or when their step numbers cannot be those of a run: a file from
 /// elsewhere may have any.
-Stretch statesIn(const mcap::Reader& reader, std::uint64_t begin_ns, std::int64_t step_ns,
-                 const std::filesystem::path& file) {
+Stretch statesIn(const mcap::Source& reader, std::uint64_t begin_ns, std::int64_t step_ns, const mcap::FileList& file) {
   expectTopic(reader, dds::topics::kPlantState.name, file);
   std::uint64_t count = 0, first = 0, last = 0;
   forEachMessageOf(dds::topics::kPlantState, reader, begin_ns, [&](const msg::PlantState& state, const auto&) {
@@ -111,7 +110,7 @@ class TraceFiller {
 
 /// Reads the messages of these topics in one pass over the file.
 template <class... T>
-void read(const mcap::Reader& reader, std::uint64_t begin_ns, TraceFiller& filler, const dds::Topic<T>&... topics) {
+void read(const mcap::Source& reader, std::uint64_t begin_ns, TraceFiller& filler, const dds::Topic<T>&... topics) {
   const auto fill = [&]<class M>(const dds::Topic<M>& topic, const mcap::MessageView& view) {
     M message;
     if (view.channel->topic == topic.name && dds::decode(view.data, message)) filler(message);
@@ -123,8 +122,8 @@ void read(const mcap::Reader& reader, std::uint64_t begin_ns, TraceFiller& fille
 
 }  // namespace
 
-Trace readTrace(const std::filesystem::path& file) {
-  const mcap::Reader reader(file);
+Trace readTrace(const mcap::FileList& file) {
+  const mcap::JoinedReader reader(file);
   Trace trace;
   trace.scenario = recordedScenario(reader, file);
   trace.is_complete = isCertified(reader);

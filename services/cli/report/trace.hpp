@@ -3,11 +3,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "mcap/joined_reader.hpp"
 #include "messages/loop.hpp"
 #include "msg/swap.h"
 #include "runtime/scenario.hpp"
@@ -51,6 +51,6 @@ struct Trace {
 
 /// Throws UnavailableError when the file cannot be opened, UsageError when it is not the recording of a run: without a
 /// scenario, a robot or states, or with states so far apart that most of the run is missing.
-[[nodiscard]] Trace readTrace(const std::filesystem::path& file);
+[[nodiscard]] Trace readTrace(const mcap::FileList& file);
 
 }  // namespace baton

@@ -43,7 +43,7 @@ std::map<std::string, ParameterValue> valuesOf(const std::vector<std::string>& s
 }
 
 /// One that was not in the run.
-Candidate newcomer(const mcap::Reader& reader, const fs::path& file, const CounterfactualWish& wish) {
+Candidate newcomer(const mcap::Source& reader, const mcap::FileList& file, const CounterfactualWish& wish) {
   Candidate candidate;
   Scenario& scenario = candidate.scenario = recordedScenario(reader, file);
   const LawInfo& law = findLaw(wish.law);
@@ -91,7 +91,7 @@ std::optional<std::vector<std::uint8_t>> stateAtBranch(const RecordedRun& run, c
 }
 
 /// When the controller had to command as the outgoing one, and when it had to begin anew as the incoming one.
-void readHandovers(const mcap::Reader& reader, const RecordedRun& run, Candidate& candidate) {
+void readHandovers(const mcap::Source& reader, const RecordedRun& run, Candidate& candidate) {
   std::map<std::uint64_t, msg::SwapPlan> plans;
   forEachMessageOf(dds::topics::kSwapPlan, reader, run.begin_ns, [&](const msg::SwapPlan& plan, const auto&) {
     if (plan.phase() == msg::SWAP_COMMIT) plans[plan.plan_id()] = plan;
@@ -105,7 +105,7 @@ void readHandovers(const mcap::Reader& reader, const RecordedRun& run, Candidate
 }
 
 /// One in the place of a controller: it lives through the same, and has the same values unless others are asked for.
-Candidate standIn(const mcap::Reader& reader, const fs::path& file, const CounterfactualWish& wish) {
+Candidate standIn(const mcap::Source& reader, const mcap::FileList& file, const CounterfactualWish& wish) {
   const RecordedRun run = readRecordedRun(file);
   Candidate candidate;
   Scenario& scenario = candidate.scenario = run.scenario;
@@ -135,14 +135,14 @@ Candidate standIn(const mcap::Reader& reader, const fs::path& file, const Counte
   return candidate;
 }
 
-Candidate candidateFor(const mcap::Reader& reader, const fs::path& file, const CounterfactualWish& wish) {
+Candidate candidateFor(const mcap::Source& reader, const mcap::FileList& file, const CounterfactualWish& wish) {
   if (wish.law.empty() && wish.as.empty()) {
     throw UsageError("expected a law (--law), or a controller of the recording (--as), found neither");
   }
   return wish.as.empty() ? newcomer(reader, file, wish) : standIn(reader, file, wish);
 }
 
-void expectContacts(const mcap::Reader& reader, const LawInfo& law, const fs::path& file) {
+void expectContacts(const mcap::Source& reader, const LawInfo& law, const mcap::FileList& file) {
   if (!law.uses_force || hasTopic(reader, dds::topics::kContact.name)) return;
   throw UsageError(file.string() + ": expected contact forces, which the law " + law.name +
                    " uses, found no topic contact in the recording: try a law that is blind to them (`baton laws`)");
@@ -159,7 +159,7 @@ std::optional<bool> usesForce(const Scenario& scenario, const std::string& name)
 /// Takes a law through the steps.
 class Walk {
  public:
-  Walk(const mcap::Reader& reader, const Candidate& candidate, Counterfactual& made, const EffortSink& sink)
+  Walk(const mcap::Source& reader, const Candidate& candidate, Counterfactual& made, const EffortSink& sink)
       : candidate_(candidate),
         made_(made),
         sink_(sink),
@@ -261,9 +261,9 @@ void Gap::spare(std::uint64_t step) {
   if (steps > 0 && last_step == step) --steps;
 }
 
-Counterfactual counterfactual(const fs::path& file, const CounterfactualWish& wish, const EffortSink& sink,
+Counterfactual counterfactual(const mcap::FileList& file, const CounterfactualWish& wish, const EffortSink& sink,
                               const std::function<void(double)>& progress) {
-  const mcap::Reader reader(file);
+  const mcap::JoinedReader reader(file);
   const Candidate candidate = candidateFor(reader, file, wish);
   for (const char* topic : {dds::topics::kPlantState.name, dds::topics::kReference.name}) {
     expectTopic(reader, topic, file);

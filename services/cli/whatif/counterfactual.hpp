@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "control/parameters.hpp"
 #include "effort_difference.hpp"
+#include "mcap/joined_reader.hpp"
 #include "recorded_steps.hpp"
 #include "runtime/scenario.hpp"
 
@@ -75,7 +75,7 @@ using EffortSink = std::function<void(const RecordedStep&, const JointVector& ef
 
 /// Throws UsageError for a file that is not the recording of a run, a law that is not known or does not take its
 /// parameters, and a law that uses force where no contact is recorded; and what reading a recording throws.
-[[nodiscard]] Counterfactual counterfactual(const std::filesystem::path& file, const CounterfactualWish& wish,
+[[nodiscard]] Counterfactual counterfactual(const mcap::FileList& file, const CounterfactualWish& wish,
                                             const EffortSink& sink = {},
                                             const std::function<void(double)>& progress = {});
 

@@ -100,7 +100,7 @@ std::uint64_t RecordedStep::inputsHash(bool uses_force) const {
   return dds::inputsHash(std::span(hashes).first(uses_force ? 3 : 2));
 }
 
-void forEachStep(const mcap::Reader& reader, std::uint64_t begin_ns, int n,
+void forEachStep(const mcap::Source& reader, std::uint64_t begin_ns, int n,
                  const std::function<void(const RecordedStep&)>& f, const std::function<void(double)>& progress) {
   Gatherer gather(n, f);
   const auto read = [&]<class M>(const mcap::MessageView& view, const dds::Topic<M>& topic) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/signals.hpp"
-#include "mcap/reader.hpp"
+#include "mcap/source.hpp"
 
 namespace baton {
 
@@ -50,7 +50,7 @@ struct RecordedStep {
 /// one step may be far apart in the file, but not further than that. Throws what reading a recording throws.
 /// @param begin_ns  log time from which on everything is of the run's last take.  @param n  joints.
 /// @param progress  called now and then with the part that has been read, from 0 to 1.
-void forEachStep(const mcap::Reader& reader, std::uint64_t begin_ns, int n,
+void forEachStep(const mcap::Source& reader, std::uint64_t begin_ns, int n,
                  const std::function<void(const RecordedStep&)>& f, const std::function<void(double)>& progress = {});
 
 }  // namespace baton

@@ -64,7 +64,7 @@ Replay replayOnce(Programs& programs, const std::string& file, int ticks, const 
 
 Histogram seekAround(const std::string& file, int times) {
   ReplayOptions options;
-  options.file = file;
+  options.recording.given = {file};
   Playlist playlist(options);
   Histogram duration_ns;
   std::uint64_t random = 1;
