@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <vector>
 
 #include "base/error.hpp"
 #include "dds/fastdds.hpp"
@@ -144,11 +145,13 @@ struct RawReader::Impl final : DataReaderListener {
         on_match(std::move(on_match_in)),
         filter(std::move(filter_in)) {
     incoming.payload.reserve(options.max_payload);
+    is_keyed = options.keyed;
     Participant::Impl& shared = participant.impl();
     Topic* topic = shared.topic(options.topic, options.type, options.max_payload, options.keyed);
     DataReaderQos qos = shared.subscriber->get_default_datareader_qos();
     applyOptions(options, qos);
     qos.expects_inline_qos(options.keyed);
+    if (options.any_encoding) fastdds::acceptAnyEncoding(qos);
     reader = shared.subscriber->create_datareader(
         topic, qos, this,
         StatusMask::data_available() << StatusMask::subscription_matched() << StatusMask::sample_lost());
@@ -162,18 +165,34 @@ struct RawReader::Impl final : DataReaderListener {
   void on_data_available(DataReader* source) override {
     SampleInfo info;
     while (fastdds::isDone(source->take_next_sample(&incoming, &info))) {
-      if (!info.valid_data) continue;
-      const Guid writer = toGuid(info.sample_identity.writer_guid());
-      if (!isAdmitted(writer)) {
+      if (!info.valid_data && !is_keyed) continue;
+      const RawSample sample{.payload = incoming.payload,
+                             .sequence = info.sample_identity.sequence_number().to64long(),
+                             .source_timestamp_ns = info.source_timestamp.to_ns(),
+                             .reception_timestamp_ns = info.reception_timestamp.to_ns(),
+                             .writer = toGuid(info.sample_identity.writer_guid()),
+                             .has_data = info.valid_data};
+      if (!isAdmitted(sample.writer)) {
         ++refused;
-        continue;
+      } else if (is_keyed) {
+        burst.push_back({sample, incoming.payload});
+      } else {
+        callback(sample);
       }
-      callback({.payload = incoming.payload,
-                .sequence = info.sample_identity.sequence_number().to64long(),
-                .source_timestamp_ns = info.source_timestamp.to_ns(),
-                .reception_timestamp_ns = info.reception_timestamp.to_ns(),
-                .writer = writer});
     }
+    if (is_keyed) deliverBurst();
+  }
+  /// DDS hands out what is there of one instance after the other.
+  void deliverBurst() {
+    std::stable_sort(burst.begin(), burst.end(), [](const Kept& a, const Kept& b) {
+      return a.sample.writer == b.sample.writer ? a.sample.sequence < b.sample.sequence
+                                                : a.sample.writer < b.sample.writer;
+    });
+    for (Kept& one : burst) {
+      one.sample.payload = one.payload;
+      callback(one.sample);
+    }
+    burst.clear();
   }
   bool isAdmitted(const Guid& writer) {
     if (!filter || admitted.contains(writer)) return true;
@@ -197,6 +216,12 @@ struct RawReader::Impl final : DataReaderListener {
   std::atomic<std::uint64_t> refused{0};
   Matches matches;
   RawType::Incoming incoming;  // reused: taking a sample allocates only when one is larger than all before
+  bool is_keyed = false;
+  struct Kept {
+    RawSample sample;
+    std::vector<std::byte> payload;
+  };
+  std::vector<Kept> burst;  // of a keyed topic
   std::atomic<std::uint64_t> lost{0};
   DataReader* reader = nullptr;
 };

@@ -27,6 +27,7 @@ struct EndpointOptions {
   bool keyed = false;                // must equal the other side's
   bool exclusive_ownership = false;  // likewise
   bool best_effort = false;          // writer: does not resend; reader: also match writers that do not
+  bool any_encoding = false;         // reader: of bytes alone, also match writers that send XCDR2 (from Fast DDS 3 on)
   // What readers may demand of a writer beyond the profile; readers of Baton demand nothing of it.
   std::int64_t deadline_ns = 0;          // writer: promises a sample at least this often; 0, and beyond 68 years: none
   Liveliness liveliness{};               // writer
@@ -68,7 +69,8 @@ class RawReader {
  public:
   using Callback = std::function<void(const RawSample&)>;
 
-  /// The callback runs on a DDS thread, once a sample, in order of arrival.
+  /// The callback runs on a DDS thread, once a sample, in order of arrival and for each writer in the order of its
+  /// sequence numbers. Of keyed topics it is also told of what has no data.
   RawReader(Participant& participant, const EndpointOptions& options, Callback callback, MatchCallback on_match = {},
             WriterFilter filter = {});
   ~RawReader();

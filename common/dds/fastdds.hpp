@@ -109,6 +109,13 @@ struct ReaderTimes {
 }
 #endif
 
+/// A reader of bytes takes any encoding. (2.9 neither says so to the writer nor looks at what that one sends.)
+inline void acceptAnyEncoding([[maybe_unused]] dds::DataReaderQos& qos) {
+#if BATON_FASTDDS == 3
+  qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION, dds::XCDR2_DATA_REPRESENTATION};
+#endif
+}
+
 /// Sends no types and looks up none.
 inline void propagateNoTypes(dds::DomainParticipantQos& qos) {
 #if BATON_FASTDDS == 3
@@ -245,7 +252,8 @@ class DiscoveryListener : public dds::DomainParticipantListener {
 #endif
 };
 
-/// A type support that moves bytes; it has no keys and advertises no type objects.
+/// A type support that moves bytes; it knows no keys and advertises no type objects. What is received on a keyed topic
+/// without the hash of its key is of one instance: DDS would keep it for ever otherwise, and hand it to nobody.
 class BytesType : public dds::TopicDataType {
  public:
   BytesType(const std::string& type_name, std::uint32_t max_size, bool keyed) {
@@ -267,6 +275,14 @@ class BytesType : public dds::TopicDataType {
   [[nodiscard]] virtual std::uint32_t sizeOf(const void* data) const = 0;
   [[nodiscard]] virtual void* make() const = 0;
   virtual void destroy(void* data) const = 0;
+  /// Whether it was filled by take(), not given to put().
+  [[nodiscard]] virtual bool isReceived(const void* data) const = 0;
+
+  [[nodiscard]] static bool takeForOne(rtps::InstanceHandle_t& instance) {
+    const rtps::GUID_t any(rtps::GuidPrefix_t{}, 1);
+    instance = any;
+    return true;
+  }
 
 #if BATON_FASTDDS == 3
   bool serialize(const void* const data, rtps::SerializedPayload_t& payload, dds::DataRepresentationId_t) final {
@@ -278,7 +294,9 @@ class BytesType : public dds::TopicDataType {
   }
   void* create_data() final { return make(); }
   void delete_data(void* data) final { destroy(data); }
-  bool compute_key(rtps::SerializedPayload_t&, rtps::InstanceHandle_t&, bool) final { return false; }
+  bool compute_key(rtps::SerializedPayload_t&, rtps::InstanceHandle_t& instance, bool) final {
+    return takeForOne(instance);
+  }
   bool compute_key(const void* const, rtps::InstanceHandle_t&, bool) final { return false; }
 #else
   bool serialize(void* data, rtps::SerializedPayload_t* payload) final { return put(data, *payload); }
@@ -288,7 +306,9 @@ class BytesType : public dds::TopicDataType {
   }
   void* createData() final { return make(); }
   void deleteData(void* data) final { destroy(data); }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) final { return false; }
+  bool getKey(void* data, rtps::InstanceHandle_t* instance, bool) final {
+    return isReceived(data) && takeForOne(*instance);
+  }
 #endif
 };
 

@@ -13,17 +13,22 @@
 
 namespace baton::dds {
 
-/// Baton's own topics have no keys; a foreign keyed topic carries its key hash in-line.
+/// Baton's own topics have no keys; a foreign keyed topic may carry the hash of its key in-line.
 class RawType final : public fastdds::BytesType {
  public:
   using BytesType::BytesType;
 
+  struct Data {
+    bool is_received = false;
+  };
   /// What write() is given.
-  struct Outgoing {
+  struct Outgoing : Data {
+    explicit Outgoing(std::span<const std::byte> bytes) : payload(bytes) {}
     std::span<const std::byte> payload;
   };
   /// What take() fills.
-  struct Incoming {
+  struct Incoming : Data {
+    Incoming() : Data{.is_received = true} {}
     std::vector<std::byte> payload;
   };
 
@@ -49,6 +54,7 @@ class RawType final : public fastdds::BytesType {
   }
   [[nodiscard]] void* make() const override { return new Incoming; }
   void destroy(void* data) const override { delete static_cast<Incoming*>(data); }
+  [[nodiscard]] bool isReceived(const void* data) const override { return static_cast<const Data*>(data)->is_received; }
 };
 
 }  // namespace baton::dds

@@ -41,6 +41,8 @@ struct RawSample {
   std::int64_t source_timestamp_ns = 0;  // set by the writer
   std::int64_t reception_timestamp_ns = 0;
   Guid writer;
+  bool has_data =
+      true;  // false: an instance of a keyed topic has been disposed of or left; of value is the number alone
 };
 
 /// How a topic behaves; qos.cpp gives each its reasons.
