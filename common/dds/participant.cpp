@@ -56,9 +56,9 @@ std::uint64_t loseOneIn() {
   return one_in;
 }
 
-std::shared_ptr<transport::TransportDescriptorInterface> loopbackUdp() {
+std::shared_ptr<transport::TransportDescriptorInterface> udpOn(const std::vector<std::string>& addresses) {
   auto udp = std::make_shared<transport::UDPv4TransportDescriptor>();
-  udp->interfaceWhiteList = {"127.0.0.1"};  // the default would open every interface of the machine
+  udp->interfaceWhiteList = addresses;  // an empty list opens every interface of the machine
   udp->sendBufferSize = kSocketBuffer;
   udp->receiveBufferSize = kSocketBuffer;
   return udp;
@@ -107,7 +107,8 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
 
   qos.transport().use_builtin_transports = false;
   const std::uint64_t one_in = loseOneIn();
-  qos.transport().user_transports.push_back(one_in > 0 ? losing(one_in, loopbackUdp()) : loopbackUdp());
+  const auto udp = udpOn(options.addresses);
+  qos.transport().user_transports.push_back(one_in > 0 ? losing(one_in, udp) : udp);
   if (options.transport == Transport::kSharedMemory) {
     qos.transport().user_transports.push_back(std::make_shared<transport::SharedMemTransportDescriptor>());
   }
@@ -119,7 +120,7 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
   // reason for a long lease: Fast DDS 2.9.1 checks a lease once per lease duration, and an assertion ends the process
   // when its participant leaves during the check.
   discovery.leaseDuration_announcementperiod = {3, 0};
-  discovery.leaseDuration = {3600, 0};
+  discovery.leaseDuration = {options.lease_s, 0};
   discovery.initial_announcements.count = 5;
   discovery.initial_announcements.period = {0, 20'000'000};
   fastdds::propagateNoTypes(qos);
@@ -127,9 +128,9 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
 }
 
 [[noreturn]] void refuse(const std::string& what) {
-  throw UnavailableError(
-      "DDS could not create " + what +
-      ": expected loopback UDP (127.0.0.1) to be usable and memory to be free; check both and retry");
+  throw UnavailableError("DDS could not create " + what +
+                         ": expected UDP (on the loopback, 127.0.0.1, unless another interface was asked for) to be "
+                         "usable and memory to be free; check both and retry");
 }
 }  // namespace
 
@@ -162,6 +163,7 @@ Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_
   publisher_qos.partition().push_back(options.partition.c_str());
   subscriber_qos.partition().push_back(options.partition.c_str());
   for (const std::string& other : options.other_partitions) publisher_qos.partition().push_back(other.c_str());
+  for (const std::string& other : options.also_read) subscriber_qos.partition().push_back(other.c_str());
   publisher = participant->create_publisher(publisher_qos);
   subscriber = participant->create_subscriber(subscriber_qos);
   if (publisher == nullptr || subscriber == nullptr) refuse("a publisher and a subscriber");
@@ -303,6 +305,13 @@ void Participant::watchWriters(WriterCallback callback) {
   impl_->on_writer = std::move(callback);
   if (!impl_->on_writer) return;
   for (const auto& [guid, writer] : known) impl_->on_writer(writer);
+}
+
+std::vector<DiscoveredWriter> Participant::writers() const {
+  const std::lock_guard lock(impl_->mutex);
+  std::vector<DiscoveredWriter> result;
+  for (const auto& [guid, writer] : impl_->writers) result.push_back(writer);
+  return result;
 }
 
 std::string productName() { return std::string("Fast DDS ") + fastdds::kVersion; }

@@ -17,8 +17,11 @@ namespace baton::dds {
 struct ParticipantOptions {
   int domain = 0;         // 0 to 232
   std::string partition;  // "cell/run": endpoints in other partitions are never matched; may be a pattern for observers
-  std::vector<std::string> other_partitions{};  // writers are heard in these as well; "": where no partition is set
-  std::string cell;                             // the cell this process belongs to, empty for observers of any
+  std::vector<std::string> other_partitions{};      // writers are heard in these as well; "": where no partition is set
+  std::vector<std::string> also_read{};             // readers match writers in these as well, likewise; may be patterns
+  std::vector<std::string> addresses{"127.0.0.1"};  // IPv4, of the interfaces it uses; empty: all of this machine
+  int lease_s = 3600;                               // how long the others take it for alive after its last word
+  std::string cell;                                 // the cell this process belongs to, empty for observers of any
   std::string run;      // the run within the cell; what is left over from another run is told apart by this
   std::string service;  // name of the service, unique in the run
   Transport transport = Transport::kUdp;
@@ -88,6 +91,8 @@ class Participant {
   /// Calls back for every writer of somebody else in the domain, those known already first, until another callback or
   /// an empty one takes its place: no call is under way any more when this returns. Not to be called from a callback.
   void watchWriters(WriterCallback callback);
+  /// Those that have not been withdrawn, by anybody else in the domain.
+  [[nodiscard]] std::vector<DiscoveredWriter> writers() const;
 
   struct Impl;  // Fast DDS entities, for the other files of this folder
   [[nodiscard]] Impl& impl() const { return *impl_; }

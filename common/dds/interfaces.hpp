@@ -1,0 +1,21 @@
+/// The machine's network interfaces, as people name them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace baton::dds {
+
+/// One IPv4 address of an interface that is up.
+struct Interface {
+  std::string name;     // "eth0"
+  std::string address;  // "192.0.2.2"
+};
+[[nodiscard]] std::vector<Interface> interfaces();
+
+/// The addresses of those that are wanted, by name or address; none when nothing is, for all of the machine. Throws
+/// UsageError, naming those that are there, for one that is not.
+[[nodiscard]] std::vector<std::string> addressesOf(const std::vector<std::string>& wanted,
+                                                   const std::vector<Interface>& there);
+
+}  // namespace baton::dds
