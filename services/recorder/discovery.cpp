@@ -1,14 +1,16 @@
 #include "discovery.hpp"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <boost/asio/post.hpp>
 
-#include "base/text.hpp"
+#include "base/error.hpp"
 
 namespace baton {
 namespace {
+
+std::int64_t sinceEpoch() {
+  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
+}
 
 /// What eProsima's DDS Record & Replay keeps of a writer's QoS, and reads: whoever stands in for it must share these.
 std::string qosYaml(const dds::DiscoveredWriter& writer) {
@@ -19,96 +21,54 @@ std::string qosYaml(const dds::DiscoveredWriter& writer) {
 
 }  // namespace
 
-TopicReaders::TopicReaders(Service& service, TopicSelection selection, dds::GuidPrefix own, Sink sink)
-    : service_(service), selection_(std::move(selection)), own_(own), sink_(std::move(sink)) {
-  requireServices();
+TopicReaders::TopicReaders(dds::Participant& participant, boost::asio::io_context& executor, ReadingRules rules,
+                           Sink sink)
+    : participant_(participant), executor_(executor), rules_(std::move(rules)), sink_(std::move(sink)) {
+  places_.push_back({&participant_});
 }
 
 TopicReaders::~TopicReaders() {
-  service_.participant().watchWriters({});  // those of other cells come and go while this one ends
-  topics_.clear();                          // their callbacks use what is declared after them
+  stopWatching();   // writers come and go while this one ends
+  topics_.clear();  // their callbacks use what is declared after them
 }
 
 void TopicReaders::watch() {
-  service_.participant().watchWriters([this](const dds::DiscoveredWriter& writer) {
-    if (!isOurs(writer) || dds::prefixOf(writer.guid) == own_ || !isWanted(writer)) return;
+  participant_.watchWriters([this](const dds::DiscoveredWriter& writer) {
+    if (dds::prefixOf(writer.guid) == participant_.self().prefix || !rules_.isWanted(writer)) return;
     noteWriter(writer);
-    boost::asio::post(service_.executor(), [this, writer] { writerFound(writer); });
+    boost::asio::post(executor_, [this, writer] { writerFound(writer); });
   });
 }
 
-void TopicReaders::requireServices() {
-  const Scenario& scenario = service_.scenario();
-  const auto require = [this](const std::string& name, const std::vector<std::string>& writers) {
-    awaited_.insert(name);
-    service_.require(
-        name,
-        [this, name] {
-          const std::lock_guard lock(topics_mutex_);
-          std::set<dds::GuidPrefix> matched;
-          for (const auto& known : topics_) {
-            if (known->options.topic == name) matched.merge(known->reader->matched());
-          }
-          return matched;
-        },
-        writers);
-  };
-  for (const dds::TopicFacts& topic : dds::topics::kAll) {
-    switch (topic.recorded_from) {
-      case dds::RecordedFrom::kNobody: break;
-      case dds::RecordedFrom::kPlant: require(topic.name, {kPlantName}); break;
-      case dds::RecordedFrom::kTrajectory: require(topic.name, {kTrajectoryName}); break;
-      case dds::RecordedFrom::kEnvironment:
-        if (scenario.hasEnvironment()) require(topic.name, {kEnvironmentName});
-        break;
-      case dds::RecordedFrom::kControllers: require(topic.name, controllerNames(scenario)); break;
-      case dds::RecordedFrom::kServices: require(topic.name, servicesBut(kRecorderName, scenario)); break;
-    }
-  }
-  // No writer waits for the recorder to read these; the recorder itself needs what they say.
-  for (const char* name :
-       {dds::topics::kServiceStatus.name, dds::topics::kParameterStatus.name, dds::topics::kParameterReply.name}) {
-    awaited_.insert(name);
-  }
-}
+void TopicReaders::stopWatching() { participant_.watchWriters({}); }
 
-/// A writer's partition may be a pattern, as DDS has it.
-bool TopicReaders::isOurs(const dds::DiscoveredWriter& writer) const {
-  const std::string partition = service_.options().participant().partition;
-  return std::any_of(writer.partitions.begin(), writer.partitions.end(),
-                     [&](const std::string& theirs) { return fnmatch(theirs.c_str(), partition.c_str(), 0) == 0; });
-}
-
-bool TopicReaders::isWanted(const dds::DiscoveredWriter& writer) {
-  if (hasControlCharacters(writer.topic) || hasControlCharacters(writer.type)) {
-    service_.event(msg::SEVERITY_WARNING, "stranger",
-                   "a writer of " + dds::toString(writer.guid) +
-                       " is not recorded: control characters in the name of its topic or type");
-    return false;
-  }
-  const dds::TopicFacts* facts = dds::topics::called(writer.topic);
-  return facts == nullptr || service_.admission().admits(*facts, writer.guid);
+void TopicReaders::refuse(const std::string& text) {
+  const std::lock_guard lock(facts_mutex_);
+  unreadable_.insert(text);
 }
 
 void TopicReaders::noteWriter(const dds::DiscoveredWriter& writer) {
-  const std::optional<dds::Peer> peer = service_.participant().peer(dds::prefixOf(writer.guid));
+  const std::optional<dds::Peer> peer = participant_.peer(dds::prefixOf(writer.guid));
   const std::lock_guard lock(facts_mutex_);
-  metadata_[writer.guid] = {{"writer", dds::toString(writer.guid)},
-                            {"service", peer ? peer->service : ""},
-                            {"type", writer.type},
-                            {"qos", qosYaml(writer)},
-                            {"qos_policies", writer.qos_text}};
+  Note& note = notes_[writer.guid];
+  if (note.found_ns == 0) note.found_ns = sinceEpoch();
+  note.metadata = {{"writer", dds::toString(writer.guid)},
+                   {"service", peer ? peer->service : ""},
+                   {"type", writer.type},
+                   {"qos", qosYaml(writer)},
+                   {"qos_policies", writer.qos_text}};
   found_.insert(writer.topic);
 }
 
 void TopicReaders::writerFound(const dds::DiscoveredWriter& writer) {
-  if (!selection_.isRecorded(writer.topic) && !awaited_.contains(writer.topic)) return;
+  if (!rules_.selection.isRecorded(writer.topic) && !rules_.awaited.contains(writer.topic)) return;
   const dds::EndpointOptions options{.topic = writer.topic,
                                      .type = writer.type,
                                      .profile = writer.transient_local ? dds::Profile::kEvent : dds::Profile::kLoop,
                                      .keyed = writer.keyed,
                                      .exclusive_ownership = writer.exclusive_ownership,
-                                     .best_effort = !writer.reliable};
+                                     .best_effort = !writer.reliable,
+                                     .any_encoding = true};
   const std::lock_guard lock(topics_mutex_);
   const auto known =
       std::find_if(topics_.begin(), topics_.end(), [&](const auto& topic) { return topic->options == options; });
@@ -123,23 +83,33 @@ void TopicReaders::writerFound(const dds::DiscoveredWriter& writer) {
     has_rivals_ = true;
   auto topic = std::make_unique<Topic>();
   topic->options = options;
-  const dds::TopicFacts* facts = dds::topics::called(writer.topic);
   try {
     topic->reader = std::make_unique<dds::RawReader>(
-        service_.participant(), options,
+        participantFor(writer.topic, writer.type), options,
         [this, index](const dds::RawSample& sample) {
-          if (dds::prefixOf(sample.writer) != own_ && isFor(index, sample.writer)) sink_(index, sample);
+          if (dds::prefixOf(sample.writer) != participant_.self().prefix && isFor(index, sample.writer)) {
+            sink_(index, sample);
+          }
         },
-        [this] { service_.matchesChanged(); },
-        facts == nullptr ? dds::WriterFilter{} : service_.admission().filter(*facts));
+        [this] {
+          if (rules_.onMatch) rules_.onMatch();
+        },
+        rules_.filterFor(writer.topic));
   } catch (const Error& error) {
-    {
-      const std::lock_guard facts_lock(facts_mutex_);
-      unreadable_.insert("a writer cannot be recorded: " + std::string(error.what()));
-    }
-    return service_.event(msg::SEVERITY_ERROR, "record", error.what());
+    refuse("a writer cannot be recorded: " + std::string(error.what()));
+    return rules_.onUnreadable(error.what());
   }
   topics_.push_back(std::move(topic));
+}
+
+dds::Participant& TopicReaders::participantFor(const std::string& topic, const std::string& type) {
+  for (Place& place : places_) {
+    if (place.types.try_emplace(topic, type).first->second == type) return *place.participant;
+  }
+  if (!rules_.another) return participant_;  // it says what is the matter
+  more_.push_back(rules_.another());
+  places_.push_back({more_.back().get(), {{topic, type}}});
+  return *more_.back();
 }
 
 bool TopicReaders::isFor(std::uint32_t topic, const dds::Guid& writer) {
@@ -158,17 +128,29 @@ TopicReaders::Writer TopicReaders::of(std::uint32_t topic, const dds::Guid& writ
     result.type = options.type;
     result.lasts = options.profile == dds::Profile::kEvent;
   }
-  result.is_recorded = selection_.isRecorded(result.topic);
+  result.is_recorded = rules_.selection.isRecorded(result.topic);
   {
     const std::lock_guard lock(facts_mutex_);
-    if (const auto found = metadata_.find(writer); found != metadata_.end()) result.metadata = found->second;
+    if (const auto found = notes_.find(writer); found != notes_.end()) {
+      result.found_ns = found->second.found_ns;
+      result.metadata = found->second.metadata;
+    }
   }
   if (std::string& service = result.metadata["service"]; service.empty()) {
     // Its endpoints may have been known before the process was.
-    if (const auto peer = service_.participant().peer(dds::prefixOf(writer))) service = peer->service;
+    if (const auto peer = participant_.peer(dds::prefixOf(writer))) service = peer->service;
   }
   result.metadata["type"] = result.type;
   result.metadata["writer"] = dds::toString(writer);
+  return result;
+}
+
+std::set<dds::GuidPrefix> TopicReaders::matched(const std::string& topic) const {
+  const std::lock_guard lock(topics_mutex_);
+  std::set<dds::GuidPrefix> result;
+  for (const auto& known : topics_) {
+    if (known->options.topic == topic) result.merge(known->reader->matched());
+  }
   return result;
 }
 
@@ -176,19 +158,37 @@ std::vector<std::string> TopicReaders::leftOut() const {
   const std::lock_guard lock(facts_mutex_);
   std::vector<std::string> result;
   for (const std::string& topic : found_) {
-    if (!selection_.isRecorded(topic)) result.push_back(topic);
+    if (!rules_.selection.isRecorded(topic)) result.push_back(topic);
   }
   return result;
 }
 
 std::vector<std::string> TopicReaders::unmatched() const {
   const std::lock_guard lock(facts_mutex_);
-  return selection_.unmatched(found_);
+  return rules_.selection.unmatched(found_);
 }
 
 std::vector<std::string> TopicReaders::unreadable() const {
   const std::lock_guard lock(facts_mutex_);
   return {unreadable_.begin(), unreadable_.end()};
+}
+
+std::vector<std::string> TopicReaders::unmatchedWriters(std::chrono::nanoseconds patience) const {
+  const std::int64_t latest_ns = sinceEpoch() - patience.count();
+  std::vector<std::string> result;
+  for (const dds::DiscoveredWriter& writer : participant_.writers()) {
+    const dds::GuidPrefix prefix = dds::prefixOf(writer.guid);
+    if (prefix == participant_.self().prefix || !rules_.selection.isRecorded(writer.topic)) continue;
+    {
+      const std::lock_guard lock(facts_mutex_);
+      const auto found = notes_.find(writer.guid);
+      if (found == notes_.end() || found->second.found_ns > latest_ns) continue;
+    }
+    if (matched(writer.topic).contains(prefix)) continue;
+    result.push_back(writer.topic + " of " + dds::toString(writer.guid) +
+                     ": its writer is there and has not been matched (its QoS: " + writer.qos_text + ")");
+  }
+  return result;
 }
 
 }  // namespace baton

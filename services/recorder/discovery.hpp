@@ -1,86 +1,122 @@
-/// The topics of the cell, found as their writers appear, each read as raw bytes: no type is known here. A topic that
-/// is left out is read only where the run waits for the recorder to listen.
+/// Topics, found as their writers appear, each read as raw bytes: no type is known here. Which writers are of concern,
+/// and who counts on a topic, is decided by whoever records.
 ///
-/// On the topics of a run only those are recorded who are heard there; topics of other programs are anybody's.
-///
-/// Readers are made on the executor; who writes what is noted where discovery tells of it, before a sample can come.
+/// Readers are made on the executor; who writes what is noted where discovery reports it, before a sample can come.
 #pragma once
 
 #include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "dds/endpoint.hpp"
 #include "mcap/records.hpp"
-#include "runtime/service.hpp"
 #include "topic_selection.hpp"
 
 namespace baton {
+
+/// Of all the traffic in a domain, what is read.
+struct ReadingRules {
+  TopicSelection selection{};
+  std::set<std::string> awaited{};  // topics that are read though they are not recorded
+  /// Whether a writer is of concern. On a DDS thread.
+  std::function<bool(const dds::DiscoveredWriter&)> isWanted;
+  /// Whose samples count on a topic; an empty one: everybody's.
+  std::function<dds::WriterFilter(const std::string& topic)> filterFor = [](const std::string&) {
+    return dds::WriterFilter{};
+  };
+  /// Readers are matched with others than before. On a DDS thread.
+  std::function<void()> onMatch{};
+  /// A writer cannot be read, in a sentence. On the executor.
+  std::function<void(const std::string& text)> onUnreadable;
+  /// Another participant like the first: one has room for one type under the name of a topic. Empty: there is none, and
+  /// writers of a second type are unreadable.
+  std::function<std::unique_ptr<dds::Participant>()> another{};
+};
 
 class TopicReaders {
  public:
   /// On a DDS thread. @param topic  the place of the topic, for of().
   using Sink = std::function<void(std::uint32_t topic, const dds::RawSample& sample)>;
 
-  /// @param own  the recorder itself, whose topics are not recorded: writing them would change them.
-  TopicReaders(Service& service, TopicSelection selection, dds::GuidPrefix own, Sink sink);
+  /// What the participant itself writes is not recorded: writing it would change it.
+  TopicReaders(dds::Participant& participant, boost::asio::io_context& executor, ReadingRules rules, Sink sink);
   ~TopicReaders();
   TopicReaders(const TopicReaders&) = delete;
   TopicReaders& operator=(const TopicReaders&) = delete;
 
   /// Begins to watch. Once.
   void watch();
+  /// No more readers from now on.
+  void stopWatching();
+  /// A writer is not read, in a sentence; any thread.
+  void refuse(const std::string& text);
 
   struct Writer {
     std::string topic;
     std::string type;
     bool is_recorded = true;
     bool lasts = false;
-    mcap::StringMap metadata;  // of its channel
+    std::int64_t found_ns = 0;  // since the epoch, by this machine's clock
+    mcap::StringMap metadata;   // of its channel
   };
   /// Who is behind a sample; any thread.
   [[nodiscard]] Writer of(std::uint32_t topic, const dds::Guid& writer) const;
+  /// Who is matched with the readers of a topic; any thread.
+  [[nodiscard]] std::set<dds::GuidPrefix> matched(const std::string& topic) const;
   /// What has been left out so far, by name; patterns of the selection that nothing has matched so far; and writers
   /// that could not be read, in a sentence each. Any thread.
   [[nodiscard]] std::vector<std::string> leftOut() const;
   [[nodiscard]] std::vector<std::string> unmatched() const;
   [[nodiscard]] std::vector<std::string> unreadable() const;
+  /// Writers that are recorded and there, and have not been matched within `patience` of being found: nothing of theirs
+  /// can come. In a sentence each; any thread.
+  [[nodiscard]] std::vector<std::string> unmatchedWriters(std::chrono::nanoseconds patience) const;
 
  private:
   struct Topic {
     dds::EndpointOptions options;
     std::unique_ptr<dds::RawReader> reader;
   };
+  struct Place {
+    dds::Participant* participant = nullptr;
+    std::map<std::string, std::string> types{};  // by topic
+  };
+  struct Note {
+    std::int64_t found_ns = 0;
+    mcap::StringMap metadata;
+  };
 
-  [[nodiscard]] bool isWanted(const dds::DiscoveredWriter& writer);
   void noteWriter(const dds::DiscoveredWriter& writer);
   void writerFound(const dds::DiscoveredWriter& writer);
-  [[nodiscard]] bool isOurs(const dds::DiscoveredWriter& writer) const;
+  [[nodiscard]] dds::Participant& participantFor(const std::string& topic, const std::string& type);
   [[nodiscard]] bool isFor(std::uint32_t topic, const dds::Guid& writer);
-  void requireServices();
 
-  Service& service_;
-  TopicSelection selection_;
-  dds::GuidPrefix own_;
+  dds::Participant& participant_;
+  boost::asio::io_context& executor_;
+  ReadingRules rules_;
   Sink sink_;
-  std::set<std::string> awaited_;  // topics of which the run waits until the recorder reads them
+  std::vector<std::unique_ptr<dds::Participant>> more_;  // of rules_.another; outlive the readers
+  std::vector<Place> places_;                            // of the executor
 
   mutable std::mutex topics_mutex_;
   std::vector<std::unique_ptr<Topic>> topics_;
 
   // Never held while DDS is asked for something: discovery takes it with DDS's own locks held.
   mutable std::mutex facts_mutex_;
-  std::map<dds::Guid, mcap::StringMap> metadata_;  // noted when it is found: who asks something leaves soon
-  std::set<std::string> found_;                    // topics, recorded or not
+  std::map<dds::Guid, Note> notes_;  // made when it is found: who asks something leaves soon
+  std::set<std::string> found_;      // topics, recorded or not
   std::set<std::string> unreadable_;
 
   // A reader hears writers of a stronger QoS as well: of two on a topic, each takes its own.
   std::atomic<bool> has_rivals_{false};
-  std::mutex routes_mutex_;
+  mutable std::mutex routes_mutex_;
   std::map<dds::Guid, std::uint32_t> routes_;
 };
 

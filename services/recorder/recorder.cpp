@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "run_reading.hpp"
+
 namespace baton {
 namespace {
 
@@ -13,8 +15,7 @@ constexpr std::size_t kWakeSamples = 1024;
 Recorder::Recorder(Service& service)
     : service_(service),
       queue_(kQueueBytes, kWakeSamples, service.participant().clock()),
-      topics_(service, {service.scenario().recording.topics, service.scenario().recording.except},
-              service.participant().self().prefix,
+      topics_(service.participant(), service.executor(), rulesOfRun(service),
               [this](std::uint32_t topic, const dds::RawSample& sample) { (void)queue_.push(topic, sample); }),
       session_(service, queue_, topics_) {
   service.answersNoSteps();
@@ -23,6 +24,7 @@ Recorder::Recorder(Service& service)
                 [this](const msg::RecordRequest& request, const dds::RawSample& sample) {
                   if (!service_.isFromBefore(sample)) session_.ask(request);
                 });
+  requireRecorded(service, topics_);
   topics_.watch();
   thread_ = std::thread([this] {
     try {

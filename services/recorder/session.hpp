@@ -21,6 +21,7 @@
 #include "recording.hpp"
 #include "ring.hpp"
 #include "run_notes.hpp"
+#include "runtime/service.hpp"
 #include "sample_queue.hpp"
 
 namespace baton {

@@ -1,0 +1,79 @@
+#include "run_reading.hpp"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+
+#include "base/text.hpp"
+
+namespace baton {
+namespace {
+
+/// A writer's partition may be a pattern, as DDS has it.
+bool isOfCell(const dds::DiscoveredWriter& writer, const std::string& partition) {
+  return std::any_of(writer.partitions.begin(), writer.partitions.end(),
+                     [&](const std::string& theirs) { return fnmatch(theirs.c_str(), partition.c_str(), 0) == 0; });
+}
+
+bool isAdmitted(Service& service, const dds::DiscoveredWriter& writer) {
+  if (hasControlCharacters(writer.topic) || hasControlCharacters(writer.type)) {
+    service.event(msg::SEVERITY_WARNING, "stranger",
+                  "a writer of " + dds::toString(writer.guid) +
+                      " is not recorded: control characters in the name of its topic or type");
+    return false;
+  }
+  const dds::TopicFacts* facts = dds::topics::called(writer.topic);
+  return facts == nullptr || service.admission().admits(*facts, writer.guid);
+}
+
+/// Whose samples are awaited from the first one on, by topic; nobody is for a topic that the run does not wait for.
+std::vector<std::string> awaitedFrom(const dds::TopicFacts& topic, const Scenario& scenario) {
+  switch (topic.recorded_from) {
+    case dds::RecordedFrom::kNobody: break;
+    case dds::RecordedFrom::kPlant: return {kPlantName};
+    case dds::RecordedFrom::kTrajectory: return {kTrajectoryName};
+    case dds::RecordedFrom::kEnvironment:
+      return scenario.hasEnvironment() ? std::vector<std::string>{kEnvironmentName} : std::vector<std::string>{};
+    case dds::RecordedFrom::kControllers: return controllerNames(scenario);
+    case dds::RecordedFrom::kServices: return servicesBut(kRecorderName, scenario);
+  }
+  return {};
+}
+
+}  // namespace
+
+ReadingRules rulesOfRun(Service& service) {
+  const Scenario& scenario = service.scenario();
+  ReadingRules rules;
+  rules.selection = {scenario.recording.topics, scenario.recording.except};
+  for (const dds::TopicFacts& topic : dds::topics::kAll) {
+    if (!awaitedFrom(topic, scenario).empty()) rules.awaited.insert(topic.name);
+  }
+  // No writer waits for the recorder to read these; the recorder itself needs what they say.
+  for (const char* name :
+       {dds::topics::kServiceStatus.name, dds::topics::kParameterStatus.name, dds::topics::kParameterReply.name}) {
+    rules.awaited.insert(name);
+  }
+  rules.isWanted = [&service,
+                    partition = service.options().participant().partition](const dds::DiscoveredWriter& writer) {
+    return isOfCell(writer, partition) && isAdmitted(service, writer);
+  };
+  rules.filterFor = [&service](const std::string& topic) {
+    const dds::TopicFacts* facts = dds::topics::called(topic);
+    return facts == nullptr ? dds::WriterFilter{} : service.admission().filter(*facts);
+  };
+  rules.onMatch = [&service] { service.matchesChanged(); };
+  rules.onUnreadable = [&service](const std::string& text) { service.event(msg::SEVERITY_ERROR, "record", text); };
+  return rules;
+}
+
+void requireRecorded(Service& service, const TopicReaders& readers) {
+  for (const dds::TopicFacts& topic : dds::topics::kAll) {
+    std::vector<std::string> writers = awaitedFrom(topic, service.scenario());
+    if (writers.empty()) continue;
+    service.require(
+        topic.name, [&readers, name = std::string(topic.name)] { return readers.matched(name); }, std::move(writers));
+  }
+}
+
+}  // namespace baton
