@@ -17,9 +17,6 @@
 
 namespace baton::dds {
 
-/// A topic whose name ends so carries states: only a writer's latest sample counts. Of the others every sample matters.
-[[nodiscard]] constexpr bool isStatusTopic(std::string_view name) { return name.ends_with("_status"); }
-
 /// Whose samples a recording must have from the first one on, or it is not complete. A run begins when the recorder
 /// reads them. Samples of other writers are recorded from when the writer is discovered, unless the writer itself waits
 /// for the recorder, as controllers do with `checkpoint` and `decision`.
@@ -99,10 +96,18 @@ inline constexpr std::array kAll{BATON_TOPICS(BATON_TOPIC_FACTS)};
 
 static_assert(std::ranges::all_of(kAll,
                                   [](const TopicFacts& topic) {
-                                    return isStatusTopic(topic.name) == (topic.profile == Profile::kStatus);
+                                    return std::string_view(topic.name).ends_with("_status") ==
+                                           (topic.profile == Profile::kStatus);
                                   }),
               "a topic with the profile kStatus is called ..._status, and no other is");
 }  // namespace topics
 #undef BATON_TOPICS
+
+/// Whether a topic of Baton's carries states: only a writer's latest sample counts. Of the others, and of all topics of
+/// other people whatever their names, every sample matters.
+[[nodiscard]] constexpr bool isStatusTopic(std::string_view name) {
+  const TopicFacts* facts = topics::called(name);
+  return facts != nullptr && facts->profile == Profile::kStatus;
+}
 
 }  // namespace baton::dds

@@ -63,6 +63,16 @@ void Ledger::dropped(Stream& booked, std::uint64_t first_sequence, std::uint64_t
   stream.last_sequence = last_sequence;
 }
 
+void Ledger::passOver(Stream& booked, std::uint64_t first_sequence, std::uint64_t last_sequence) {
+  ReceivedStream& stream = booked.second;
+  if (last_sequence <= stream.last_sequence) return;
+  const bool has_begun = stream.count + stream.missing > 0;
+  if (has_begun && first_sequence > stream.last_sequence + 1) {
+    note(booked, stream.last_sequence + 1, first_sequence - 1, "never came");
+  }
+  stream.last_sequence = last_sequence;
+}
+
 void Ledger::note(Stream& stream, std::uint64_t first_sequence, std::uint64_t last_sequence, const char* reason) {
   stream.second.missing += last_sequence - first_sequence + 1;
   if (mayLack(stream.first.first) || gaps_.size() == kMaxGaps) return;

@@ -59,6 +59,8 @@ class Ledger {
   }
   /// These came and found no room.
   void dropped(Stream& booked, std::uint64_t first_sequence, std::uint64_t last_sequence);
+  /// Of these none is missing: they had no data, or their writer had replaced them before it was found.
+  void passOver(Stream& booked, std::uint64_t first_sequence, std::uint64_t last_sequence);
   /// Nothing is asked about this topic: it is left out on purpose.
   void leaveOut(const std::string& topic) { left_out_.insert(topic); }
   /// Something that ought to be in the recording cannot be.

@@ -17,13 +17,16 @@ bool SampleQueue::push(std::uint32_t topic, const dds::RawSample& sample) {
       return false;
     }
     last_log_time_ns_ = std::max(last_log_time_ns_, now_ns);
+    // A writer may send no time with its samples; MCAP wants the log time there then.
+    const bool has_time = sample.source_timestamp_ns > 0;
     pending_.entries.push_back({.topic = topic,
                                 .sequence = sample.sequence,
                                 .log_time_ns = last_log_time_ns_,
-                                .source_timestamp_ns = sample.source_timestamp_ns,
+                                .source_timestamp_ns = has_time ? sample.source_timestamp_ns : last_log_time_ns_,
                                 .writer = sample.writer,
                                 .offset = pending_.payloads.size(),
-                                .size = sample.payload.size()});
+                                .size = sample.payload.size(),
+                                .has_data = sample.has_data});
     pending_.payloads.insert(pending_.payloads.end(), sample.payload.begin(), sample.payload.end());
     wake = pending_.entries.size() == wake_entries_;
   }

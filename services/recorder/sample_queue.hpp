@@ -25,6 +25,7 @@ class SampleQueue {
     dds::Guid writer;
     std::size_t offset = 0;  // of the payload in Batch::payloads
     std::size_t size = 0;
+    bool has_data = true;  // as dds::RawSample has it
   };
   /// Samples of one writer that found no room, after all the entries of their batch.
   struct Drop {

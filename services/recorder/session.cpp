@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "booking.hpp"
 #include "dds/codec.hpp"
 #include "mcap/lookup.hpp"
 #include "run_manifest.hpp"
@@ -88,7 +89,7 @@ void RecordingSession::takeBatch(const SampleQueue::Batch& batch) {
     const auto payload = batch.payload(entry);
     Stream& stream = streamOf(entry.topic, entry.writer);
     // What is not in the account may be here twice.
-    if (stream.is_booked && !ledger_.book(*stream.received, entry.sequence, payload)) continue;
+    if (!(stream.is_booked ? book(ledger_, stream, entry, payload) : entry.has_data)) continue;
     if (stream.credit) credit_.came(*stream.credit, payload);
     if (!stream.is_status) ++progress_;
     // Also what found no room in the queue, which is booked behind the batch it was dropped from.
@@ -119,6 +120,7 @@ Stream& RecordingSession::streamOf(std::uint32_t topic, const dds::Guid& writer)
   stream.is_booked = facts.is_recorded || stream.is_manifest || facts.topic == dds::topics::kServiceStatus.name;
   stream.is_status = dds::isStatusTopic(facts.topic);
   stream.latched = facts.lasts ? latchedDepth(facts.topic, stream.metadata) : 0;
+  stream.found_ns = facts.found_ns;
   if (!facts.is_recorded) ledger_.leaveOut(facts.topic);
   return stream;
 }

@@ -35,6 +35,18 @@ bool push(SampleQueue& queue, std::uint32_t topic, std::uint64_t sequence, std::
   return queue.push(topic, sample.raw);
 }
 
+TEST(SampleQueue, ASampleWithoutATimeOfItsWriterHasTheTimeItCame) {
+  SampleQueue queue(1 << 20, 1);
+  Sample sample = sampleOf(1);
+  sample.raw.source_timestamp_ns = -1;
+  ASSERT_TRUE(queue.push(0, sample.raw));
+  SampleQueue::Batch batch;
+  ASSERT_TRUE(queue.take(batch, kNoWait));
+  ASSERT_EQ(batch.entries.size(), 1u);
+  EXPECT_GT(batch.entries[0].log_time_ns, 0);
+  EXPECT_EQ(batch.entries[0].source_timestamp_ns, batch.entries[0].log_time_ns);
+}
+
 TEST(SampleQueue, SamplesComeOutAsTheyWentIn) {
   SampleQueue queue(1 << 20, 1);
   for (std::uint64_t i = 1; i <= 100; ++i) ASSERT_TRUE(push(queue, static_cast<std::uint32_t>(i % 7), i, i));
