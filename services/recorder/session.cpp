@@ -47,8 +47,8 @@ RecordingSession::RecordingSession(Service& service, SampleQueue& queue, const T
       credit_(service.scenario()),
       ledger_(servicesBut(kRecorderName, service.scenario())),
       path_(service.options().out),
-      is_limited_(config_.isSplit() || config_.max_bytes > 0 || config_.min_free_bytes > 0) {
-  free_bytes_ = freeBytes(path_);
+      room_(config_) {
+  room_.measure(path_);
   if (control_.isRing()) {
     ring_ = std::make_unique<Ring>(config_.ring_steps, config_.ring_bytes);
   } else if (control_.keeps()) {
@@ -139,7 +139,7 @@ void RecordingSession::keep(const Stream& stream, const SampleQueue::Entry& entr
                  .payload = payload});
     return;
   }
-  if (is_limited_) makeRoom();
+  if (room_.isLimited()) makeRoom();
   try {
     if (recording_) {
       recording_->write(stream, {.sequence = entry.sequence,
@@ -233,7 +233,9 @@ std::string RecordingSession::objectionTo(const msg::RecordRequest& request) con
   if (request.action() != msg::RECORD_SNAPSHOT) return "";
   const std::filesystem::path path = pathOf(request);
   if (path == path_) return path.string() + " is where the ring goes at the end of the run";
-  return roomObjection(config_, ring_->bytes(), freeBytes(path));
+  Room there(config_);
+  there.measure(path);
+  return roomObjection(config_, ring_->bytes(), there.freeBytes());
 }
 
 void RecordingSession::start(const std::string& path) {
@@ -247,7 +249,7 @@ void RecordingSession::start(const std::string& path) {
   holes_.clear();
   begun_at_ = credit_.elapsedSteps();
   path_ = path;
-  free_bytes_ = freeBytes(path_);
+  room_.measure(path_);
   text_.clear();
 }
 
@@ -290,7 +292,7 @@ void RecordingSession::tend() {
   if (!is_synced) synced_ = Clock::now();
   if (is_tended) return;
   tended_ = now;
-  free_bytes_ = freeBytes(path_);
+  room_.measure(path_);
   publishStatus();
 }
 
@@ -317,7 +319,7 @@ void RecordingSession::publishStatus() {
   const SampleQueue::Depth depth = queue_.depth();
   status.queued(depth.samples);
   status.queued_bytes(depth.bytes);
-  status.disk_left(free_bytes_);
+  status.disk_left(room_.freeBytes());
   status.lost(ledger_.missing());
   if (status.lost() > 0) addLosses(status);
   status.complete(control_.state() == msg::RECORDER_CLOSED && incomplete_.empty());

@@ -20,6 +20,7 @@
 #include "discovery.hpp"
 #include "recording.hpp"
 #include "ring.hpp"
+#include "room.hpp"
 #include "run_notes.hpp"
 #include "runtime/service.hpp"
 #include "sample_queue.hpp"
@@ -60,7 +61,6 @@ class RecordingSession {
   void addLosses(msg::RecorderStatus& status) const;
   // session_files.cpp: files that grow, and how they end
   void makeRoom();
-  [[nodiscard]] static std::uint64_t freeBytes(const std::filesystem::path& file);
   std::string finish(const Ending& ending);
   std::string writeRing(const std::string& path, const Ending& ending);
   std::string close(Recording& recording, std::uint64_t begun_at, const Ending& ending, const std::vector<Hole>& holes);
@@ -87,15 +87,13 @@ class RecordingSession {
   std::unique_ptr<Ring> ring_;
   std::string path_;            // of the latest recording
   std::uint64_t begun_at_ = 0;  // steps of the run, when it began
-  bool is_limited_ = false;     // by the disk, or split
   std::string text_;            // what the status says
   std::uint64_t progress_ = 0;  // samples of which every one matters
   std::chrono::steady_clock::time_point tended_{};
   std::chrono::steady_clock::time_point synced_ = std::chrono::steady_clock::now();
   std::chrono::steady_clock::time_point moved_{};  // after the run's end
   std::optional<std::uint64_t> progress_at_end_;
-  std::uint64_t free_bytes_ = 0;
-  std::uint64_t measured_bytes_ = 0;     // of the recording when the disk was last looked at
+  Room room_;
   std::uint64_t finished_messages_ = 0;  // of the latest recording, when it is finished
   std::uint64_t finished_bytes_ = 0;
   std::string incomplete_;  // the first of the recordings made that is

@@ -1,48 +1,26 @@
 // Files that grow, and how they end.
 #include <spdlog/spdlog.h>
-#include <sys/statvfs.h>
 
 #include <filesystem>
-#include <limits>
 #include <utility>
 
 #include "session.hpp"
 
 namespace baton {
 
-/// On its disk.
-std::uint64_t RecordingSession::freeBytes(const std::filesystem::path& file) {
-  struct statvfs disk {};
-  const std::filesystem::path folder = file.parent_path();
-  if (statvfs(folder.empty() ? "." : folder.c_str(), &disk) != 0) return std::numeric_limits<std::uint64_t>::max();
-  return std::uint64_t{disk.f_bavail} * disk.f_frsize;
-}
-
 /// Before a sample is written: in this part, in another one, or no more.
 void RecordingSession::makeRoom() {
   if (!recording_) return;
   try {
-    recording_->splitWhenFull(credit_.elapsedSteps(), credit_.stateStep());
-    for (;;) {
-      Storage storage = recording_->storage();
-      // Others write there as well; between two chunks nothing of ours comes to it.
-      const std::uint64_t bytes = storage.closed_bytes + storage.part_bytes;
-      if (std::exchange(measured_bytes_, bytes) != bytes) free_bytes_ = freeBytes(path_);
-      storage.free_bytes = free_bytes_;
-      const StorageVerdict verdict = judgeStorage(config_, storage);
-      if (verdict == StorageVerdict::kGoOn) return;
-      if (verdict == StorageVerdict::kStop) {
-        const std::string reason = reachedText(config_, storage);
-        text_ = finish({.run_is_over = false, .is_wanted = false, .reason = "ended early: " + reason});
-        control_.ended();
-        service_.event(
-            msg::SEVERITY_WARNING, "record",
-            "the recording ends at step " + std::to_string(credit_.stateStep()) + ": " + reason + "; the run goes on");
-        return publishStatus();
-      }
-      recording_->dropOldestPart();
-      path_ = recording_->firstPart().string();
-    }
+    const Room::Outcome outcome = room_.makeFor(*recording_, credit_.elapsedSteps(), credit_.stateStep());
+    if (outcome.has_dropped) path_ = recording_->firstPart().string();
+    if (outcome.end.empty()) return;
+    text_ = finish({.run_is_over = false, .is_wanted = false, .reason = "ended early: " + outcome.end});
+    control_.ended();
+    service_.event(
+        msg::SEVERITY_WARNING, "record",
+        "the recording ends at step " + std::to_string(credit_.stateStep()) + ": " + outcome.end + "; the run goes on");
+    publishStatus();
   } catch (const std::exception& error) {
     fail(error.what());
   }

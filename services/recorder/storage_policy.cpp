@@ -12,12 +12,12 @@ bool isOverBudget(const RecordingConfig& config, const Storage& storage) {
          storage.closed_bytes + storage.part_bytes + closingBytes(config, storage.part_bytes) >= config.max_bytes;
 }
 
+}  // namespace
+
 bool isDiskLow(const RecordingConfig& config, const Storage& storage) {
   return config.min_free_bytes > 0 &&
          storage.free_bytes < config.min_free_bytes + closingBytes(config, storage.part_bytes);
 }
-
-}  // namespace
 
 bool isPartFull(const RecordingConfig& config, std::uint64_t part_bytes, std::uint64_t part_steps) {
   return (config.split_bytes > 0 && part_bytes >= config.split_bytes) ||
@@ -45,12 +45,12 @@ std::string roomObjection(const RecordingConfig& config, std::uint64_t bytes, st
       mega(needed), mega(config.min_free_bytes), mega(free_bytes));
 }
 
-std::string reachedText(const RecordingConfig& config, const Storage& storage) {
+std::string reachedText(const RecordingConfig& config, const Storage& storage, const LimitNames& names) {
   if (isDiskLow(config, storage)) {
-    return fmt::format("recording.min_free_MB, {:g}, is reached: the disk has {:.1f} MB left",
-                       mega(config.min_free_bytes), mega(storage.free_bytes));
+    return fmt::format("{}, {:g}, is reached: the disk has {:.1f} MB left", names.min_free, mega(config.min_free_bytes),
+                       mega(storage.free_bytes));
   }
-  return fmt::format("recording.max_MB, {:g}, is reached", mega(config.max_bytes));
+  return fmt::format("{}, {:g}, is reached", names.max, mega(config.max_bytes));
 }
 
 }  // namespace baton
