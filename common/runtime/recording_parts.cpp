@@ -5,8 +5,28 @@
 #include <map>
 #include <string>
 
+#include "base/error.hpp"
+#include "mcap/lookup.hpp"
+#include "mcap/reader.hpp"
+#include "runtime/paths.hpp"
+
 namespace baton {
 namespace fs = std::filesystem;
+namespace {
+
+/// Whether it is a part of an earlier recording of that name, by its own word.
+bool isPartOf(const fs::path& file, const fs::path& recording) {
+  try {
+    const mcap::Reader reader(file);
+    return std::ranges::any_of(reader.metadata(), [&](const mcap::Metadata& one) {
+      return one.name == "baton.part" && mcap::valueOf(one.values, "first") == recording.filename().string();
+    });
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace
 
 fs::path partOf(const fs::path& recording, unsigned index) {
   if (index == 0) return recording;
@@ -38,6 +58,26 @@ std::vector<fs::path> furtherPartsOf(const fs::path& recording) {
   result.reserve(parts.size());
   for (const auto& [index, part] : parts) result.push_back(part);
   return result;
+}
+
+fs::path claimRecording(const std::string& option, const std::string& out, bool is_split, bool overwrite) {
+  fs::path path = outputPath(out);
+  if (fs::exists(path) && !fs::is_regular_file(path)) {
+    throw UsageError(option + " " + out + ": expected a file, and it is a folder or a device");
+  }
+  std::vector<fs::path> there;
+  if (is_split) there = furtherPartsOf(path);
+  for (const fs::path& file : there) {
+    if (isPartOf(file, path)) continue;
+    throw UsageError(option + " " + out + ": a part of it would be called " + file.string() +
+                     ", which is there and is none: choose another name");
+  }
+  if (fs::exists(path)) there.insert(there.begin(), path);
+  if (!there.empty() && !overwrite) {
+    throw UsageError(option + " " + there.front().string() + " exists: choose another name or give --overwrite");
+  }
+  for (const fs::path& file : there) fs::remove(file);
+  return path;
 }
 
 }  // namespace baton

@@ -21,8 +21,6 @@
 #include <sstream>
 
 #include "cell_client.hpp"
-#include "mcap/reader.hpp"
-#include "report/recording.hpp"
 #include "runtime/log.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/recording_parts.hpp"
@@ -89,36 +87,6 @@ pid_t launch(const fs::path& program, const std::vector<std::string>& arguments,
   return pid;
 }
 
-/// Whether it is a part of an earlier recording of that name, by its own word.
-bool isPartOf(const fs::path& file, const fs::path& recording) {
-  try {
-    return metadataValue(mcap::Reader(file), "baton.part", "first") == recording.filename().string();
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-/// The recording and, where it is split, its other parts: what is left of an earlier one would be in the way.
-fs::path checkedOut(const RunRequest& request, const RecordingConfig& recording) {
-  fs::path out = outputPath(request.out);
-  if (fs::exists(out) && !fs::is_regular_file(out)) {
-    throw UsageError("--out " + request.out + ": expected a file, and it is a folder or a device");
-  }
-  std::vector<fs::path> there;
-  if (recording.isSplit()) there = furtherPartsOf(out);
-  for (const fs::path& file : there) {
-    if (isPartOf(file, out)) continue;
-    throw UsageError("--out " + request.out + ": a part of it would be called " + file.string() +
-                     ", which is there and is none: choose another name");
-  }
-  if (fs::exists(out)) there.insert(there.begin(), out);
-  if (!there.empty() && !request.overwrite) {
-    throw UsageError("--out " + there.front().string() + " exists: choose another name or give --overwrite");
-  }
-  for (const fs::path& file : there) fs::remove(file);
-  return out;
-}
-
 }  // namespace
 
 RunSession::~RunSession() = default;
@@ -142,7 +110,9 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
   if (request.record_later && scenario.recording.ring_steps > 0) {
     throw UsageError("--record-later: the scenario keeps a ring (recording.ring_s), which has no beginning");
   }
-  if (!request.out.empty()) info_.recording = checkedOut(request, scenario.recording).string();
+  if (!request.out.empty()) {
+    info_.recording = claimRecording("--out", request.out, scenario.recording.isSplit(), request.overwrite).string();
+  }
   info_.folder = runFolder(info_.run).string();  // nothing is refused from here on
   makeKeyWhenMissing(info_);
   if (is_recorded && request.out.empty()) info_.recording = info_.folder + "/" + scenario.name + ".mcap";
