@@ -39,19 +39,33 @@ std::string seedsOf(const Scenario& scenario) {
   return fmt::format("{}", fmt::join(seeds, ", "));
 }
 
-mcap::StringMap manifestOf(const ServiceOptions& options, const Scenario& scenario) {
+}  // namespace
+
+mcap::StringMap factsOfProgram() {
   utsname host{};
   (void)uname(&host);
   std::uint64_t idl_hash = 0;
   for (const msg::IdlText& text : msg::allIdlTexts()) {
     idl_hash = dds::chainHash(idl_hash, std::as_bytes(std::span(text.text)));
   }
-  mcap::StringMap manifest = platform();
-  manifest.merge(mcap::StringMap{{"version", BATON_VERSION},
-                                 {"compiler", BATON_COMPILER},
-                                 {"flags", BATON_FLAGS},
-                                 {"build_id", buildId()},
-                                 {"scenario", scenario.name},
+  mcap::StringMap facts = platform();
+  facts.merge(mcap::StringMap{{"version", BATON_VERSION},
+                              {"compiler", BATON_COMPILER},
+                              {"flags", BATON_FLAGS},
+                              {"build_id", buildId()},
+                              {"idl_hash", fmt::format("{:016x}", idl_hash)},
+                              {"begun", utcNow()},
+                              {"host", host.nodename},
+                              {"system", fmt::format("{} {} {}", host.sysname, host.release, host.machine)},
+                              {"cores", std::to_string(std::thread::hardware_concurrency())}});
+  return facts;
+}
+
+namespace {
+
+mcap::StringMap manifestOf(const ServiceOptions& options, const Scenario& scenario) {
+  mcap::StringMap manifest = factsOfProgram();
+  manifest.merge(mcap::StringMap{{"scenario", scenario.name},
                                  {"scenario_file", scenario.file},
                                  {"robot", scenario.robot.name},
                                  {"cell", options.cell},
@@ -59,12 +73,7 @@ mcap::StringMap manifestOf(const ServiceOptions& options, const Scenario& scenar
                                  {"domain", std::to_string(options.domain)},
                                  {"checkpoint", options.checkpoint},
                                  {"step_ns", std::to_string(scenario.step_ns)},
-                                 {"seed", seedsOf(scenario)},
-                                 {"idl_hash", fmt::format("{:016x}", idl_hash)},
-                                 {"begun", utcNow()},
-                                 {"host", host.nodename},
-                                 {"system", fmt::format("{} {} {}", host.sysname, host.release, host.machine)},
-                                 {"cores", std::to_string(std::thread::hardware_concurrency())}});
+                                 {"seed", seedsOf(scenario)}});
   return manifest;
 }
 
