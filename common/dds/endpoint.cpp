@@ -150,7 +150,8 @@ struct RawReader::Impl final : DataReaderListener {
     Topic* topic = shared.topic(options.topic, options.type, options.max_payload, options.keyed);
     DataReaderQos qos = shared.subscriber->get_default_datareader_qos();
     applyOptions(options, qos);
-    qos.expects_inline_qos(options.keyed);
+    // The hash of the key, which only the owner of an instance needs: Cyclone DDS matches no reader that asks for it.
+    qos.expects_inline_qos(options.keyed && options.exclusive_ownership);
     if (options.any_encoding) fastdds::acceptAnyEncoding(qos);
     reader = shared.subscriber->create_datareader(
         topic, qos, this,
