@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base/text.hpp"
+#include "become.hpp"
 #include "cell_target.hpp"
 #include "messages/state_names.hpp"
 #include "runtime/json.hpp"
@@ -145,10 +146,23 @@ void ask(const RecordArguments& arguments, msg::RecordAction action, ExitCode& e
   }
 }
 
+/// Needs no run, and so none of the options that find one: everything after its name is for the recorder.
+void addTraffic(CLI::App& record) {
+  CLI::App* command = record.add_subcommand("traffic", "record what is published in a DDS domain, without a run");
+  command->prefix_command();
+  command->set_help_flag();
+  command->callback([command] {
+    std::vector<std::string> arguments{"baton-recorder", "--traffic"};
+    const std::vector<std::string> rest = command->remaining();
+    arguments.insert(arguments.end(), rest.begin(), rest.end());
+    become("baton-recorder", std::move(arguments));
+  });
+}
+
 }  // namespace
 
 void addRecordCommand(CLI::App& app, ExitCode& exit_code) {
-  CLI::App* command = app.add_subcommand("record", "what the run's recorder does, and how it stands");
+  CLI::App* command = app.add_subcommand("record", "what the run's recorder does; or record any DDS traffic");
   command->require_subcommand(1);
   command->footer(
       "The run goes on whatever is asked here. What is left out on purpose is told in the certificate, step by step, "
@@ -175,6 +189,7 @@ void addRecordCommand(CLI::App& app, ExitCode& exit_code) {
   addRequest("resume", "go on in the same file", msg::RECORD_RESUME);
   addRequest("snapshot", "write what a ring holds (recording: {ring_s: SECONDS}); it goes on", msg::RECORD_SNAPSHOT)
       ->add_option("--out", arguments->out, "the file (default: beside the run's recording, named after the step)");
+  addTraffic(*command);
 }
 
 }  // namespace baton

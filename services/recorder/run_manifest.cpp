@@ -52,7 +52,6 @@ mcap::StringMap factsOfProgram() {
   facts.merge(mcap::StringMap{{"version", BATON_VERSION},
                               {"compiler", BATON_COMPILER},
                               {"flags", BATON_FLAGS},
-                              {"build_id", buildId()},
                               {"idl_hash", fmt::format("{:016x}", idl_hash)},
                               {"begun", utcNow()},
                               {"host", host.nodename},
@@ -65,7 +64,8 @@ namespace {
 
 mcap::StringMap manifestOf(const ServiceOptions& options, const Scenario& scenario) {
   mcap::StringMap manifest = factsOfProgram();
-  manifest.merge(mcap::StringMap{{"scenario", scenario.name},
+  manifest.merge(mcap::StringMap{{"build_id", buildId()},
+                                 {"scenario", scenario.name},
                                  {"scenario_file", scenario.file},
                                  {"robot", scenario.robot.name},
                                  {"cell", options.cell},

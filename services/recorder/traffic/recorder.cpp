@@ -1,0 +1,122 @@
+#include "traffic/recorder.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+#include "base/text.hpp"
+#include "dds/interfaces.hpp"
+#include "runtime/log.hpp"
+#include "runtime/recording_parts.hpp"
+#include "runtime/signals.hpp"
+#include "traffic/options.hpp"
+
+namespace baton {
+namespace {
+
+constexpr std::size_t kMostQueued = std::size_t{256} << 20;
+constexpr std::size_t kWakeAfter = 1024;
+
+const char* nameOf(int signal) { return signal == SIGINT ? "Ctrl-C" : signal == SIGTERM ? "SIGTERM" : "SIGHUP"; }
+
+bool isIgnored(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+}  // namespace
+
+TrafficRecorder::TrafficRecorder(const TrafficOptions& options)
+    : options_(options),
+      participant_(participantOptions()),
+      queue_(kMostQueued, kWakeAfter),
+      topics_(participant_, executor_, rules(),
+              [this](std::uint32_t topic, const dds::RawSample& sample) { (void)queue_.push(topic, sample); }),
+      session_(options, queue_, topics_) {
+  if (!isIgnored(SIGHUP)) signals_.add(SIGHUP);
+}
+
+/// A guest in other people's domain: when it is killed, their reliable writers soon stop waiting for it. Not as soon as
+/// they might: where Fast DDS 2.9.1 looks whether its peers are alive, a peer that leaves just then ends the process,
+/// and a run has several.
+dds::ParticipantOptions TrafficRecorder::participantOptions() const {
+  constexpr int kLease_s = 60;
+  std::vector<std::string> read = readPartitions(options_.partitions);
+  const std::string first = read.front();
+  read.erase(read.begin());
+  return {.domain = options_.domain,
+          .partition = first,
+          .also_read = std::move(read),
+          .addresses = dds::addressesOf(options_.interfaces, dds::interfaces()),
+          .lease_s = kLease_s,
+          .cell = "",
+          .run = "",
+          .service = "traffic-recorder"};
+}
+
+ReadingRules TrafficRecorder::rules() {
+  ReadingRules rules;
+  rules.selection = options_.selection;
+  rules.isWanted = [this, read = readPartitions(options_.partitions)](const dds::DiscoveredWriter& writer) {
+    if (!isInPartitions(writer.partitions, read)) return false;
+    if (!hasControlCharacters(writer.topic) && !hasControlCharacters(writer.type)) return true;
+    topics_.refuse("a writer of " + dds::toString(writer.guid) +
+                   " is not recorded: control characters in the name of its topic or type");
+    return false;
+  };
+  rules.onUnreadable = [](const std::string& text) { spdlog::error("{}", text); };
+  rules.another = [this] { return std::make_unique<dds::Participant>(participantOptions()); };
+  return rules;
+}
+
+TrafficResult TrafficRecorder::run() {
+  awaitSignal();
+  awaitDuration();
+  topics_.watch();
+  TrafficResult result;
+  std::thread writing([&] {
+    result = session_.run();
+    executor_.stop();
+  });
+  executor_.run();
+  writing.join();
+  topics_.stopWatching();
+  return result;
+}
+
+void TrafficRecorder::awaitSignal() {
+  signals_.async_wait([this](const boost::system::error_code& error, int signal) {
+    if (error) return;
+    if (std::exchange(is_ending_, true)) {
+      std::fputs("the file is being finished; kill -9 would leave it without its index\n", stderr);
+    }
+    session_.end(TrafficEnd::kSignal, std::string("ended by ") + nameOf(signal));
+    awaitSignal();
+  });
+}
+
+void TrafficRecorder::awaitDuration() {
+  if (!options_.duration_s) return;
+  duration_.expires_after(std::chrono::milliseconds(static_cast<std::int64_t>(*options_.duration_s * 1e3)));
+  duration_.async_wait([this](const boost::system::error_code& error) {
+    if (!error) session_.end(TrafficEnd::kReached, fmt::format("--duration, {:g} s, is over", *options_.duration_s));
+  });
+}
+
+ExitCode recordTraffic(int argc, const char* const* argv) {
+  const HeldSignals held;
+  TrafficOptions options;
+  if (!parseTrafficOptions(argc, argv, options)) return ExitCode::kOk;
+  options.out = claimRecording("FILE", options.out, options.recording.isSplit(), options.overwrite).string();
+  setUpLog("record");
+  TrafficRecorder recorder(options);
+  held.release();
+  const TrafficResult result = recorder.run();
+  std::puts((options.json ? jsonOf(result, options) : textOf(result, options)).c_str());
+  return exitCodeOf(result, options);
+}
+
+}  // namespace baton
