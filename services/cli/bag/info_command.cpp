@@ -177,8 +177,13 @@ void printText(const BagSummary& bag) {
   for (const std::string& note : notesOn(bag)) fmt::print("note        {}\n", escaped(note));
   if (!bag.run.empty()) {
     const auto of = [&](const char* key) { return escaped(valueOf(bag.run, key)); };
-    fmt::print("recorded    {} with robot {}, run {} of cell {} on {}\n", of("scenario"), of("robot"), of("run"),
-               of("cell"), of("host"));
+    if (of("kind") == "traffic") {
+      fmt::print("recorded    traffic of domain {} on {} (interfaces: {}), begun {}\n", of("domain"), of("host"),
+                 of("interfaces"), of("begun"));
+    } else {
+      fmt::print("recorded    {} with robot {}, run {} of cell {} on {}\n", of("scenario"), of("robot"), of("run"),
+                 of("cell"), of("host"));
+    }
     fmt::print("by          Baton {}, {} ({})\n", of("version"), of("compiler"), of("flags"));
   }
   fmt::print("messages    {} in {:.3f} s\n", bag.messages, bag.duration());

@@ -19,6 +19,7 @@ struct Verification {
   std::vector<std::string> cuts;     // where a file ends in the middle
   std::vector<std::string> missing;  // messages that are missing, and what keeps completeness from being proven
   std::string summary;               // the certificate's verdict, in its words
+  bool is_traffic = false;           // recorded without a run: no manifest counts
   Ledger ledger{{}};                 // every stream as the bytes give it, beside what its writer says of it
   LogTimes log_times;                // whose jumps take nothing from the verdict
   std::uint64_t messages = 0;        // that could be read

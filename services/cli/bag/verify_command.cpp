@@ -23,7 +23,12 @@ struct VerifyRequest {
 void printText(const Verification& found) {
   fmt::print("{}: {}\n", fmt::join(found.files, ", "), nameOf(found.verdict()));
   if (found.verdict() == RecordingVerdict::kComplete) {
-    if (found.ledger.servicesHeard() > 0) {
+    if (found.is_traffic) {
+      fmt::print(
+          "            as received: by the bytes no sample is missing between a writer's first and last. It is traffic "
+          "without\n");
+      fmt::print("            manifests, so what was sent before and after that nobody says\n");
+    } else if (found.ledger.servicesHeard() > 0) {
       fmt::print("            proven from the bytes: {} services vouch for what they sent, all of it is here\n",
                  found.ledger.servicesHeard());
     } else {
@@ -51,7 +56,8 @@ nlohmann::ordered_json toJson(const Verification& found) {
           {"missing", found.missing},
           {"clock", found.log_times.findings()},
           {"certificate", found.summary},
-          {"manifests", found.ledger.servicesHeard()},
+          {"traffic", found.is_traffic},
+          {"manifests", found.is_traffic ? 0 : found.ledger.servicesHeard()},
           {"messages", found.messages},
           {"size_B", found.bytes},
           {"streams", nlohmann::ordered_json::parse(found.ledger.certificate()).at("streams")}};
