@@ -68,6 +68,11 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
   app.add_option("--partition", options.partition,
                  "be heard in this DDS partition as well; '' for listeners that set none");
   addTransport(app, options.transport);
+  app.add_option("--interface", options.interfaces,
+                 "publish on these, by name or IPv4 address, or all; programs that keep off the loopback need that")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->capture_default_str();
   app.add_option("--topics", options.topics, "only these topics: a,b,c")->delimiter(',')->allow_extra_args(false);
   app.add_option("--remap", remap, "publish topics under other names: old=new ...");
   app.add_option(

@@ -21,6 +21,7 @@ struct ReplayOptions {
   std::string run;                       // never empty once parsed
   std::optional<std::string> partition;  // heard there as well; empty: where listeners set none
   dds::Transport transport = dds::Transport::kUdp;
+  std::vector<std::string> interfaces{"lo"};  // names or IPv4 addresses; "all": of this machine
   std::vector<std::string> topics;           // recorded names; all when empty
   std::map<std::string, std::string> remap;  // recorded name to the name published
   double rate = 1.0;                         // recorded seconds per second; 0 for as fast as readers take it

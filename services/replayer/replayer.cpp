@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "dds/interfaces.hpp"
 #include "runtime/cell.hpp"
 
 namespace baton {
@@ -24,6 +25,7 @@ constexpr std::int64_t kForever_ns = 1'000'000'000'000'000'000;
 dds::ParticipantOptions participantOptions(const ReplayOptions& options) {
   dds::ParticipantOptions place{.domain = options.domain,
                                 .partition = options.cell + "/" + options.run,
+                                .addresses = dds::addressesOf(options.interfaces, dds::interfaces()),
                                 .cell = options.cell,
                                 .run = options.run,
                                 .service = "replayer",
