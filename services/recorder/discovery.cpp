@@ -8,10 +8,6 @@
 namespace baton {
 namespace {
 
-std::int64_t sinceEpoch() {
-  return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 /// What eProsima's DDS Record & Replay keeps of a writer's QoS, and reads: whoever stands in for it must share these.
 std::string qosYaml(const dds::DiscoveredWriter& writer) {
   const auto word = [](bool value) { return value ? "true" : "false"; };
@@ -51,7 +47,7 @@ void TopicReaders::noteWriter(const dds::DiscoveredWriter& writer) {
   const std::optional<dds::Peer> peer = participant_.peer(dds::prefixOf(writer.guid));
   const std::lock_guard lock(facts_mutex_);
   Note& note = notes_[writer.guid];
-  if (note.found_ns == 0) note.found_ns = sinceEpoch();
+  if (note.found_ns == 0) note.found_ns = participant_.clock().now();
   note.metadata = {{"writer", dds::toString(writer.guid)},
                    {"service", peer ? peer->service : ""},
                    {"type", writer.type},
@@ -174,7 +170,7 @@ std::vector<std::string> TopicReaders::unreadable() const {
 }
 
 std::vector<std::string> TopicReaders::unmatchedWriters(std::chrono::nanoseconds patience) const {
-  const std::int64_t latest_ns = sinceEpoch() - patience.count();
+  const std::int64_t latest_ns = participant_.clock().now() - patience.count();
   std::vector<std::string> result;
   for (const dds::DiscoveredWriter& writer : participant_.writers()) {
     const dds::GuidPrefix prefix = dds::prefixOf(writer.guid);

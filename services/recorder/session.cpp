@@ -120,6 +120,7 @@ Stream& RecordingSession::streamOf(std::uint32_t topic, const dds::Guid& writer)
   stream.is_booked = facts.is_recorded || stream.is_manifest || facts.topic == dds::topics::kServiceStatus.name;
   stream.is_status = dds::isStatusTopic(facts.topic);
   stream.latched = facts.lasts ? latchedDepth(facts.topic, stream.metadata) : 0;
+  stream.lasts = facts.lasts;
   stream.found_ns = facts.found_ns;
   if (!facts.is_recorded) ledger_.leaveOut(facts.topic);
   return stream;

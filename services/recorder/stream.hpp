@@ -30,6 +30,7 @@ struct Stream {
   std::uint64_t noticed = 0;         // of what is missing
   std::uint64_t lost_at = 0;         // steps of the run, when it was noticed last that samples never came
   std::size_t latched = 0;           // how many of its latest samples late joiners are given
+  bool lasts = false;                // late joiners are given some of what was before
   std::int64_t found_ns = 0;         // when its writer was, since the epoch
 
   [[nodiscard]] const std::string& topic() const { return received->first.first; }

@@ -32,7 +32,7 @@ bool isIgnored(int signal) {
 TrafficRecorder::TrafficRecorder(const TrafficOptions& options)
     : options_(options),
       participant_(participantOptions()),
-      queue_(kMostQueued, kWakeAfter),
+      queue_(kMostQueued, kWakeAfter, participant_.clock()),
       topics_(participant_, executor_, rules(),
               [this](std::uint32_t topic, const dds::RawSample& sample) { (void)queue_.push(topic, sample); }),
       session_(options, queue_, topics_) {
