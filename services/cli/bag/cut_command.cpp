@@ -164,8 +164,9 @@ void addBagCut(CLI::App& bag, ExitCode& exit_code) {
       "the log time of the beginning. The metadata record baton.latched counts them, and `bag verify` does not.\n"
       "Metadata and attachments are kept. The metadata record baton.cut says what was left out; such a file does not\n"
       "claim to be complete, the certificate of the whole is kept under the name original_...\n"
-      "Exit codes: 0 done; 1 OUT could not be written; 2 wrong input, nothing to keep, damaged or not a recording\n"
-      "(`bag recover` makes a sound one); 3 FILE cannot be opened, or OUT is there already or cannot be made.");
+      "Exit codes: 0 done; 1 OUT could not be written, or a part is missing between the files; 2 wrong input,\n"
+      "nothing to keep, damaged or not a recording (`bag recover` makes a sound one); 3 a file cannot be opened, or\n"
+      "OUT is there already or cannot be made.");
   addTopicSelection(*command, request->what, "files",
                     "recordings (MCAP) or folders of them, read as one, and then the recording to make");
   addOverwrite(*command, request->out);
