@@ -1,5 +1,7 @@
 #include "dds/participant.hpp"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -11,6 +13,7 @@
 #include "base/error.hpp"
 #include "dds/environment.hpp"
 #include "dds/fastdds.hpp"
+#include "dds/interfaces.hpp"
 #include "dds/lossy_transport.hpp"
 #include "dds/participant_impl.hpp"
 #include "dds/raw_type.hpp"
@@ -64,6 +67,33 @@ std::shared_ptr<transport::TransportDescriptorInterface> udpOn(const std::vector
   return udp;
 }
 
+std::vector<std::string> addressesOfAll() {
+  std::vector<std::string> addresses;
+  for (const Interface& one : interfaces()) addresses.push_back(one.address);
+  return addresses;
+}
+
+/// On the port that RTPS has for it.
+rtps::Locator_t locatorOf(const std::string& address) {
+  rtps::Locator_t locator;
+  locator.kind = LOCATOR_KIND_UDPv4;
+  locator.port = 0;
+  (void)inet_pton(AF_INET, address.c_str(), &locator.address[12]);
+  return locator;
+}
+
+/// Where others reach a participant that uses several interfaces. Fast DDS would leave the loopback out, the one
+/// address at which those who are on the loopback alone, as Baton's own processes are, can send to it. Once one address
+/// is given the group of discovery has to be given as well.
+void announceAddresses(const std::vector<std::string>& addresses, DomainParticipantQos& qos) {
+  auto& builtin = qos.wire_protocol().builtin;
+  for (const std::string& address : addresses) {
+    builtin.metatrafficUnicastLocatorList.push_back(locatorOf(address));
+    qos.wire_protocol().default_unicast_locator_list.push_back(locatorOf(address));
+  }
+  builtin.metatrafficMulticastLocatorList.push_back(locatorOf("239.255.0.1"));
+}
+
 /// "name: value" lines for what a writer promises beyond the usual; nothing for what it does not.
 std::string promisesText(const fastdds::PublicationData& qos) {
   const auto line = [](const char* name, const fastdds::Duration_t& duration) {
@@ -109,6 +139,10 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
   const std::uint64_t one_in = loseOneIn();
   const auto udp = udpOn(options.addresses);
   qos.transport().user_transports.push_back(one_in > 0 ? losing(one_in, udp) : udp);
+  const bool is_everywhere = options.addresses.empty();
+  if (is_everywhere || options.addresses.size() > 1) {
+    announceAddresses(is_everywhere ? addressesOfAll() : options.addresses, qos);
+  }
   if (options.transport == Transport::kSharedMemory) {
     qos.transport().user_transports.push_back(std::make_shared<transport::SharedMemTransportDescriptor>());
   }
