@@ -14,6 +14,7 @@
 #include <random>
 
 #include "runtime/paths.hpp"
+#include "runtime/service_options.hpp"
 #include "support/attacks.hpp"
 #include "support/short_contact.hpp"
 
