@@ -253,7 +253,7 @@ class DiscoveryListener : public dds::DomainParticipantListener {
 };
 
 /// A type support that moves bytes; it knows no keys and advertises no type objects. What is received on a keyed topic
-/// without the hash of its key is of one instance: DDS would keep it for ever otherwise, and hand it to nobody.
+/// without the hash of its key is of one instance: DDS would keep it for ever otherwise, and never hand it out.
 class BytesType : public dds::TopicDataType {
  public:
   BytesType(const std::string& type_name, std::uint32_t max_size, bool keyed) {

@@ -68,7 +68,7 @@ class TopicReaders {
   };
   /// Who is behind a sample; any thread.
   [[nodiscard]] Writer of(std::uint32_t topic, const dds::Guid& writer) const;
-  /// Who is matched with the readers of a topic; any thread.
+  /// The participants matched with the readers of a topic; any thread.
   [[nodiscard]] std::set<dds::GuidPrefix> matched(const std::string& topic) const;
   /// What has been left out so far, by name; patterns of the selection that nothing has matched so far; and writers
   /// that could not be read, in a sentence each. Any thread.

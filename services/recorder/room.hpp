@@ -1,4 +1,4 @@
-/// The room that a recording has on its disk: before each sample it goes on in this part, in another one, without its
+/// The room that a recording has on its disk: before each sample it continues in this part, in another one, without its
 /// oldest, or ends.
 #pragma once
 
@@ -27,7 +27,7 @@ class Room {
   struct Outcome {
     bool has_dropped = false;  // the oldest part
     bool is_disk_low = false;
-    std::string end{};  // why the recording has to end; empty: it goes on
+    std::string end{};  // why the recording has to end; empty: it continues
   };
   /// Before a sample is written. @param elapsed, step  as Recording::splitWhenFull() has them. Throws WriteError.
   [[nodiscard]] Outcome makeFor(Recording& recording, std::uint64_t elapsed, std::uint64_t step);

@@ -79,7 +79,7 @@ class Recorder {
   int pid_ = 0;
 };
 
-/// A plain program on DDS. Nobody waits for its readers but itself.
+/// A plain program on DDS.
 class Talker {
  public:
   explicit Talker(const Bench& bench, const std::string& partition = "somewhere/else")

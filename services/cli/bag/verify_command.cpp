@@ -27,7 +27,7 @@ void printText(const Verification& found) {
       fmt::print(
           "            as received: by the bytes no sample is missing between a writer's first and last. It is traffic "
           "without\n");
-      fmt::print("            manifests, so what was sent before and after that nobody says\n");
+      fmt::print("            manifests, so what was sent before and after that is not known\n");
     } else if (found.ledger.servicesHeard() > 0) {
       fmt::print("            proven from the bytes: {} services vouch for what they sent, all of it is here\n",
                  found.ledger.servicesHeard());

@@ -39,9 +39,8 @@ bool parseTrafficOptions(int argc, const char* const* argv, TrafficOptions& opti
       "loopback alone (--interface lo). It only reads: of a run, no byte changes."};
   app.name("baton record traffic");
   app.footer(
-      "The file tells of each writer what came and which of its sequence numbers never did. Nobody says in traffic "
-      "what\n"
-      "was sent before the first and after the last sample that came, so `bag verify` says complete as received.\n"
+      "The file has of each writer what was received, and which of its sequence numbers were not. Traffic carries no\n"
+      "word on what was sent before the first and after the last sample, so `bag verify` says complete, as received.\n"
       "What is disposed of is not recorded; a type is kept with the IDL of Baton's own types, else by its name.\n"
       "Exit codes: 0 recorded without a loss; 1 samples are missing, a writer could not be read, nothing came, or the\n"
       "disk is full; 2 wrong input, or FILE exists (--overwrite); 3 the file or DDS is not available; 130 a signal\n"
@@ -60,8 +59,8 @@ bool parseTrafficOptions(int argc, const char* const* argv, TrafficOptions& opti
   app.add_option("--max-messages", options.max_messages, "end after so many messages")->check(atLeastOne());
   CLI::Option* max = app.add_option("--max-MB", max_MB, "end before the files, all parts together, are larger");
   app.add_option("--min-free-MB", min_free_MB, "end before less is left on the disk")->capture_default_str();
-  CLI::Option* by_size = app.add_option("--split-MB", split_MB, "go on in another file when one is so large");
-  CLI::Option* by_time = app.add_option("--split-s", split_s, "go on in another file after so many seconds");
+  CLI::Option* by_size = app.add_option("--split-MB", split_MB, "begin another file when one is so large");
+  CLI::Option* by_time = app.add_option("--split-s", split_s, "begin another file after so many seconds");
   app.add_option("--compression", options.recording.compression, "of the file")
       ->check(CLI::IsMember({"none", "lz4", "zstd"}))
       ->capture_default_str();

@@ -1,6 +1,6 @@
-/// Records the traffic of a DDS domain, without a run: no service, no barrier, nobody waits for it and nobody is asked.
+/// Records the traffic of a DDS domain, without a run: no service, no barrier, and no process waits for it.
 ///
-/// Threads: DDS's receive thread queues samples; the session's writes them; the caller's makes readers and hears
+/// Threads: DDS's receive thread queues samples; the session's writes them; the caller's makes readers and takes
 /// signals.
 #pragma once
 

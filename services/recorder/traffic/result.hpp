@@ -1,4 +1,4 @@
-/// What came of a recording of traffic: as text, as JSON, as an exit code.
+/// The result of a recording of traffic: as text, as JSON, as an exit code.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct TrafficResult {
   struct Loss {
     std::string topic;
     std::string writer;
-    std::string service;  // of Baton's; empty: somebody else's
+    std::string service;  // of Baton's; empty: of another program
     std::uint64_t lost = 0;
   };
   std::vector<std::string> files;  // the parts, in order
@@ -45,7 +45,7 @@ struct TrafficResult {
   std::vector<std::string> unmatched;  // patterns of topics
 };
 
-/// A signal is the ordinary end of a recording that was to go on until told otherwise; of one that was to have an end
+/// A signal is the ordinary end of a recording that was to last until then; of one that was to have an end
 /// it is an interruption.
 [[nodiscard]] ExitCode exitCodeOf(const TrafficResult& result, const TrafficOptions& options);
 [[nodiscard]] std::string textOf(const TrafficResult& result, const TrafficOptions& options);
