@@ -78,10 +78,7 @@ Recovery recover(const std::filesystem::path& in, const std::filesystem::path& o
   };
   const Reader reader(in, reading);
   result.info = reader.info();
-  if (!result.info.is_complete && (!result.info.has_all_data || result.info.trailing_bytes > 0)) {
-    const std::uint64_t end = result.info.complete_bytes;
-    losses.insert({.offset = end, .length = result.info.file_bytes - end, .reason = result.info.problem});
-  }
+  losses.insert(result.info.cuts.begin(), result.info.cuts.end());
 
   WriterOptions writing = options.writer;
   writing.profile = result.info.header.profile;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 
 #include "mcap/crc.hpp"
 
@@ -135,6 +136,15 @@ SummaryProblem inconsistency(const FileIndex& index, bool has_statistics) {
   return {};
 }
 
+/// Where damage shows again when what the summary lists is read.
+std::set<std::uint64_t> placesIn(const FileIndex& summary) {
+  std::set<std::uint64_t> places;
+  for (const Extent& one : summary.extents) places.insert(one.offset);
+  for (const AttachmentIndex& one : summary.attachments) places.insert(one.offset);
+  for (const MetadataIndex& one : summary.metadata) places.insert(one.offset);
+  return places;
+}
+
 }  // namespace
 
 std::optional<RecordPlace> RecordWalk::next() {
@@ -165,6 +175,15 @@ std::optional<RecordPlace> RecordWalk::next() {
     return std::nullopt;
   }
   position_ = place.end();
+  return place;
+}
+
+std::optional<RecordPlace> RecordWalk::peek() {
+  const std::uint64_t here = position_;
+  const std::string problem = problem_;
+  const std::optional<RecordPlace> place = next();
+  position_ = here;
+  problem_ = problem;
   return place;
 }
 
@@ -288,6 +307,7 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
   }
   SummaryProblem problem;
   const std::optional<FileIndex> summary = readSummary(file, options, problem);
+  if (summary && options.trusts_summary) return *summary;
   if (summary) {
     // Read all of it: only then is it known that no chunk holds other messages than the summary says.
     std::vector<Damage> damage;
@@ -297,7 +317,14 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
     const auto lost = std::ranges::find_if(damage, [](const Damage& one) { return one.messages > 0; });
     problem.text = lost == damage.end() ? contradictionOf(*summary, found, !damage.empty())
                                         : "its summary is not that of its data: " + describe(*lost);
-    if (problem.text.empty()) return *summary;
+    if (problem.text.empty()) {
+      if (damage.empty() || !options.on_damage) return *summary;
+      const std::set<std::uint64_t> read_again = placesIn(*summary);
+      for (const Damage& one : damage) {
+        if (!read_again.contains(one.offset)) options.on_damage(one);
+      }
+      return *summary;
+    }
     if (options.on_damage || damage.empty()) {
       for (const Damage& one : damage) options.on_damage(one);
       if (found.info.problem.empty()) found.info.problem = problem.text;
@@ -314,6 +341,7 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
 
 std::string describe(const Damage& damage) {
   if (damage.messages > 0) return std::to_string(damage.messages) + " " + damage.reason;
+  if (damage.length == 0) return "something is missing at byte " + std::to_string(damage.offset) + ": " + damage.reason;
   return std::to_string(damage.length) + " bytes at byte " + std::to_string(damage.offset) +
          " cannot be read: " + damage.reason;
 }

@@ -17,7 +17,7 @@ namespace baton::mcap {
 /// A stretch of the file that cannot be used, and why.
 struct Damage {
   std::uint64_t offset = 0;
-  std::uint64_t length = 0;  // 0: all bytes could be read
+  std::uint64_t length = 0;  // 0: all bytes could be read, and something is missing there
   std::string reason{};
   std::uint64_t messages = 0;  // that are lost although their bytes could be read
   auto operator<=>(const Damage&) const = default;
@@ -32,6 +32,9 @@ struct ReaderOptions {
   /// hundred bytes can claim gigabytes.
   std::uint64_t max_inflated_bytes = std::uint64_t{2} << 30;
   bool check_crc = true;  // of chunks, attachments and summary
+  /// Takes the index of a summary without a look at the data: in no time, for what a file says of itself. Whether the
+  /// summary is that of its data stays open; a file without one that can be used is read whole all the same.
+  bool trusts_summary = false;
   /// When given, a damaged chunk is reported here and left out. Otherwise it is thrown as FormatError.
   std::function<void(const Damage&)> on_damage{};
   /// Told, chunk by chunk, how many bytes have been read of how many while a file is indexed.
@@ -44,8 +47,10 @@ inline constexpr std::uint64_t kMostInflation = 500;
 struct FileInfo {
   Header header{};
   std::uint64_t file_bytes = 0;
-  bool is_complete = false;          // it ends as a finished recording does
-  std::uint64_t complete_bytes = 0;  // up to here everything is a whole record; file_bytes when is_complete
+  bool is_complete = false;  // it ends as a finished recording does
+  /// Up to here everything is a whole record; of joined recordings, up to where the first of them is cut. file_bytes
+  /// when is_complete.
+  std::uint64_t complete_bytes = 0;
   bool has_all_data = false;         // its data section ends as it should: if it was cut, then only in its index
   bool has_summary = false;          // the index is the file's own summary, which its data agree with
   std::uint64_t trailing_bytes = 0;  // after its end, and of no recording
@@ -54,6 +59,7 @@ struct FileInfo {
   /// Where the file contradicts itself, a sentence each: ids with two meanings, indexes of other messages than there
   /// are, recordings one after another. All of it could be read, as the data have it.
   std::vector<std::string> contradictions{};
+  std::vector<Damage> cuts{};  // where data of a recording in the file end too early, or bytes follow that are of none
   std::vector<std::uint64_t> beginnings{0};  // of recordings in the file: several, when files were joined
 };
 
@@ -85,8 +91,9 @@ struct FileIndex {
   std::vector<MetadataIndex> metadata{};
 };
 
-/// Reads the file from its start, and takes the index of its summary only when the data agree with it. Throws
-/// FormatError when the file is not MCAP, or is damaged before its end (see ReaderOptions::on_damage).
+/// Reads the file from its start, and takes the index of its summary only when the data agree with it (or are not to be
+/// asked, see ReaderOptions::trusts_summary). Throws FormatError when the file is not MCAP, or is damaged before its
+/// end (see ReaderOptions::on_damage).
 [[nodiscard]] FileIndex indexFile(const InputFile& file, const ReaderOptions& options);
 
 /// Why a summary is not used.
@@ -124,6 +131,8 @@ class RecordWalk {
 
   /// The next record; nothing at the end or where no whole record follows, see problem().
   [[nodiscard]] std::optional<RecordPlace> next();
+  /// What next() will find, without a move.
+  [[nodiscard]] std::optional<RecordPlace> peek();
   /// The end of the last whole record.
   [[nodiscard]] std::uint64_t position() const { return position_; }
   /// Goes on there, also where it had stopped.

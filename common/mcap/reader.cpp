@@ -1,9 +1,9 @@
 #include "mcap/reader.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "mcap/crc.hpp"
+#include "mcap/shape.hpp"
 
 namespace baton::mcap {
 namespace {
@@ -19,10 +19,30 @@ RecordPlace recordAt(const InputFile& file, Opcode opcode, std::uint64_t offset,
   return *place;
 }
 
+OpeningSink& openingSink() {
+  static OpeningSink sink;
+  return sink;
+}
+
+/// indexFile(), shown by the program's sink when nothing else shows it.
+FileIndex indexShown(const InputFile& file, const ReaderOptions& options) {
+  if (!openingSink() || options.on_progress) return indexFile(file, options);
+  ReaderOptions shown = options;
+  shown.on_progress = [&file](std::uint64_t done, std::uint64_t of) { openingSink()(file.path(), done, of); };
+  struct AtTheEnd {
+    const InputFile& file;
+    ~AtTheEnd() { openingSink()(file.path(), file.size(), file.size()); }
+  };
+  const AtTheEnd end{file};
+  return indexFile(file, shown);
+}
+
 }  // namespace
 
+void setOpeningSink(OpeningSink sink) { openingSink() = std::move(sink); }
+
 Reader::Reader(const std::filesystem::path& path, ReaderOptions options)
-    : options_(std::move(options)), file_(path), index_(indexFile(file_, options_)) {}
+    : options_(std::move(options)), file_(path), index_(indexShown(file_, options_)) {}
 
 Bytes Reader::readAttachment(const AttachmentIndex& attachment) const {
   const RecordPlace place = recordAt(file_, Opcode::kAttachment, attachment.offset, attachment.length);
@@ -75,7 +95,6 @@ std::optional<bool> Reader::dataCrcMatches() const {
 
 /// Of one of the recordings in the file.
 std::optional<bool> Reader::dataCrcMatches(std::uint64_t begin, std::uint64_t end) const {
-  constexpr std::uint64_t kBlockBytes = 1 << 20;
   RecordWalk walk(file_, begin + kMagic.size(), end);
   std::optional<RecordPlace> place = walk.next();
   while (place && place->opcode != Opcode::kDataEnd) place = walk.next();
@@ -85,15 +104,7 @@ std::optional<bool> Reader::dataCrcMatches(std::uint64_t begin, std::uint64_t en
   }
   const DataEnd data_end = decodeRecord(file_, *place, options_, decodeDataEnd);
   if (data_end.data_crc == 0) return std::nullopt;
-  Buffer storage;
-  std::uint32_t crc = 0;
-  for (std::uint64_t offset = begin; offset < place->offset; offset += kBlockBytes) {
-    const std::span<std::byte> block =
-        storage.resize(static_cast<std::size_t>(std::min(kBlockBytes, place->offset - offset)));
-    file_.read(offset, block);
-    crc = crc32(block, crc);
-  }
-  return crc == data_end.data_crc;
+  return crcOf(file_, begin, place->offset) == data_end.data_crc;
 }
 
 }  // namespace baton::mcap

@@ -8,6 +8,7 @@
 ///   for (mcap::MessageView message; messages.next(message);) use(message.data);
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -20,11 +21,20 @@
 
 namespace baton::mcap {
 
+/// Shows how far the opening of a file is: how many bytes have been read of how many; at the end, also of a failure,
+/// all.
+using OpeningSink = std::function<void(const std::filesystem::path& file, std::uint64_t done, std::uint64_t of)>;
+
+/// Of all files that are opened without ReaderOptions::on_progress. A program sets it before it opens one; threads that
+/// open files call it at the same time.
+void setOpeningSink(OpeningSink sink);
+
 class Reader : public Source {
  public:
-  /// Reads the whole file once, so that no index is taken that contradicts the data. Throws UnavailableError when the
-  /// file cannot be opened, UsageError when it decompresses to more than is allowed, FormatError when it is not MCAP,
-  /// and, where it has no summary that its data agree with, at the first damaged chunk (see ReaderOptions::on_damage).
+  /// Reads the whole file once, so that no index is taken that contradicts the data (unless
+  /// ReaderOptions::trusts_summary). Throws UnavailableError when the file cannot be opened, UsageError when it
+  /// decompresses to more than is allowed, FormatError when it is not MCAP, and, where it has no summary that its data
+  /// agree with, at the first damaged chunk (see ReaderOptions::on_damage).
   explicit Reader(const std::filesystem::path& path, ReaderOptions options = {});
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;

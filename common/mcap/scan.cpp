@@ -16,6 +16,11 @@ constexpr std::uint64_t kRunBytes = 4 << 20;
 /// The fields in front of an attachment's data are looked for in its first bytes only: its data can be of any size.
 constexpr std::uint64_t kAttachmentHeadBytes = 1 << 20;
 
+/// Contradictions and cuts that are named one by one: a file can have any number.
+constexpr std::size_t kMostNoted = 20;
+/// Records are searched for another recording in a file with fewer: each may claim to reach to the end of the file.
+constexpr std::size_t kMostJoined = 100;
+
 /// Where to go on behind damage is looked for in pieces that grow from this up to kRunBytes: it may be near, often.
 constexpr std::uint64_t kSearchBytes = 4 << 10;
 
@@ -30,19 +35,21 @@ class Scan {
     while (true) {
       const std::optional<RecordPlace> place = walk.next();
       if (!place && goOnWithNextRecording(walk, walk.position())) continue;
-      if (is_data_ && goOnBehindDamage(walk, place)) continue;
+      if (goOnBehindDamage(walk, place)) continue;
       if (!place) break;
       if (std::exchange(is_first_, false) && takeHeader(*place)) continue;
       if (place->opcode == Opcode::kFooter) {
         closeRun();
         closeFile(*place);
-        if (goOnWithNextRecording(walk, index_.info.complete_bytes)) continue;
+        const std::uint64_t end = index_.info.complete_bytes, longest_cut = is_closed_ ? 0 : kMagic.size();
+        if (goOnWithNextRecording(walk, recordingIn(end, end + longest_cut).value_or(end))) continue;
         return finish();
       }
       if (is_data_) {
         take(*place);
         is_data_ = !isDataEnd(*place);
         index_.info.has_all_data = !is_data_;
+        if (torn_into_) walk.moveTo(*std::exchange(torn_into_, std::nullopt));
       } else {
         refuseMisplaced(*place);
       }
@@ -60,9 +67,7 @@ class Scan {
   bool goOnWithNextRecording(RecordWalk& walk, std::uint64_t at) {
     if (at < kMagic.size() + kRecordHeadBytes || !beginsRecording(file_, at)) return false;
     closeRun();
-    if (!std::exchange(is_closed_, false) && cut_.empty()) {
-      cut_ = "the recording that another one follows at byte " + std::to_string(at) + " is cut: it has no end";
-    }
+    if (!std::exchange(is_closed_, false)) noteCut(at);
     index_.info.beginnings.push_back(at);
     index_.info.trailing_bytes = 0;
     index_.info.has_all_data = false;
@@ -74,6 +79,17 @@ class Scan {
     hidden_.reset();
     walk.moveTo(at + kMagic.size());
     return true;
+  }
+
+  /// Of a recording that another one follows.
+  void noteCut(std::uint64_t at) {
+    const std::string cut =
+        "the recording that another one follows at byte " + std::to_string(at) + " is cut: it has no end";
+    std::vector<Damage>& cuts = index_.info.cuts;
+    if (is_data_ && cuts.size() < kMostNoted) cuts.push_back({.offset = at, .reason = cut});
+    if (!cut_.empty()) return;
+    cut_ = cut;
+    cut_at_ = at;
   }
 
   /// What a DataEnd is followed by distinguishes one with added fields from another record with a damaged opcode.
@@ -105,13 +121,11 @@ class Scan {
     });
   }
 
-  /// Kept to a few: a file can have any number.
   void contradict(std::string text) {
-    constexpr std::size_t kMost = 20;
     std::vector<std::string>& found = index_.info.contradictions;
-    if (found.size() < kMost) {
+    if (found.size() < kMostNoted) {
       found.push_back(std::move(text));
-    } else if (found.size() == kMost) {
+    } else if (found.size() == kMostNoted) {
       found.emplace_back("and more of the kind");
     }
   }
@@ -135,20 +149,29 @@ class Scan {
     (void)loader_.guarded(extent, [&] { decode(readBody(file_, place, options_, storage_)); });
   }
 
-  /// Where the records cannot be followed any more, because none is there or because the lengths in one disagree, a
-  /// caller who wants what is left gets what follows from the next chunk or attachment on. False when all is well or
-  /// nothing follows.
+  /// Where the records cannot be followed any more, because none is there, because the lengths in one disagree, or
+  /// because it was cut and reaches into another recording, a caller who wants what is left gets what follows from the
+  /// next chunk, attachment or recording on. False when all is well or nothing follows.
   bool goOnBehindDamage(RecordWalk& walk, const std::optional<RecordPlace>& place) {
-    const bool is_torn = place ? isTorn(*place) : !walk.problem().empty();
-    if (!options_.on_damage || !is_torn) return false;
+    if (!options_.on_damage) return false;
     const std::uint64_t from = place ? place->offset : walk.position();
-    const std::optional<std::uint64_t> next = searchFrom(from + 1);
+    const bool disagrees = place && is_data_ && isTorn(*place);
+    std::optional<std::uint64_t> next;
+    if (disagrees || !walk.problem().empty()) {
+      next = searchFrom(from);
+    } else if (place) {
+      next = recordingInTorn(walk, *place);
+    }
     if (!next) return false;
     closeRun();
-    options_.on_damage(
-        {.offset = from,
-         .length = *next - from,
-         .reason = place ? "the lengths of the " + opcodeName(place->opcode) + " there disagree" : walk.problem()});
+    if (is_data_) {  // an index can be made again
+      const std::string kind = place ? opcodeName(place->opcode) : "";
+      options_.on_damage({.offset = from,
+                          .length = *next - from,
+                          .reason = !place      ? walk.problem()
+                                    : disagrees ? "the lengths of the " + kind + " there disagree"
+                                                : "the " + kind + " there is cut, another recording begins in it"});
+    }
     walk.moveTo(*next);
     return true;
   }
@@ -158,13 +181,78 @@ class Scan {
     return place.end() + kMagic.size() <= file_.size() && !hasMagic(file_, place.end());
   }
 
-  /// Where the next chunk or attachment begins. A recording that is attached to this one has chunks that are not of
-  /// this one: attachments are found whole, and of one whose own beginning is damaged the magic tells. Two magics are
-  /// the end of this recording and the beginning of another that was joined to it.
-  [[nodiscard]] std::optional<std::uint64_t> searchFrom(std::uint64_t from) {
+  /// The recording that begins in a record which was cut, so that its length is more than was written of it. (Of a
+  /// chunk that shows when it is loaded.)
+  [[nodiscard]] std::optional<std::uint64_t> recordingInTorn(RecordWalk& walk, const RecordPlace& place) {
+    if (place.opcode == Opcode::kChunk) return std::nullopt;
+    const bool is_dear = place.length() > kRunBytes || (is_data_ && belongsToRun(place.opcode));
+    if (is_dear && isFollowed(file_, place, walk.peek())) return std::nullopt;
+    const std::optional<std::uint64_t> next = recordingBeyond(place.offset, place.end());
+    return next && !isSoundAttachment(walk, place) ? next : std::nullopt;
+  }
+
+  static bool belongsToRun(Opcode opcode) {
+    return opcode == Opcode::kSchema || opcode == Opcode::kChannel || opcode == Opcode::kMessage;
+  }
+
+  /// By its CRC or, without one, by what follows it. A recording that is attached may have been cut.
+  [[nodiscard]] bool isSoundAttachment(RecordWalk& walk, const RecordPlace& place) const {
+    if (place.opcode != Opcode::kAttachment) return false;
+    const std::uint64_t crc_at = place.end() - sizeof(std::uint32_t);
+    const std::uint64_t crc = numberAt<std::uint32_t>(file_, crc_at);
+    if (crc == 0) return isFollowed(file_, place, walk.peek());
+    return crcOf(file_, place.offset + kRecordHeadBytes, crc_at) == crc;
+  }
+
+  /// The recording that begins in a record and ends after it: of those that lie in it each magic has a second one.
+  [[nodiscard]] std::optional<std::uint64_t> recordingBeyond(std::uint64_t record, std::uint64_t end) {
+    if (index_.info.beginnings.size() >= kMostJoined) return std::nullopt;
+    std::optional<std::uint64_t> first;
+    bool is_open = false;
+    forEachMagic(record + kRecordHeadBytes, end, [&](std::uint64_t at) {
+      if (!first && beginsRecording(file_, at)) first = at;
+      if (first) is_open = !is_open;
+      return true;
+    });
+    return is_open ? first : std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<std::uint64_t> recordingIn(std::uint64_t from, std::uint64_t end) {
+    std::optional<std::uint64_t> first;
+    forEachMagic(from, end, [&](std::uint64_t at) {
+      if (beginsRecording(file_, at)) first = at;
+      return !first;
+    });
+    return first;
+  }
+
+  /// Those that begin from one byte on and before the other. @param use  returns whether it wants the next one, too.
+  template <class Use>
+  void forEachMagic(std::uint64_t from, std::uint64_t end, Use use) {
+    for (end = std::min(end, file_.size()); from < end; from += kRunBytes) {
+      // One that begins in this piece is looked at whole.
+      const std::uint64_t size = std::min(std::min(end - from, kRunBytes) + kMagic.size() - 1, file_.size() - from);
+      const std::span<std::byte> window = storage_.resize(static_cast<std::size_t>(size));
+      file_.read(from, window);
+      for (auto magic = window.begin();; magic += kMagic.size()) {
+        magic = std::search(magic, window.end(), kMagic.begin(), kMagic.end());
+        if (magic == window.end()) break;
+        if (!use(from + static_cast<std::uint64_t>(magic - window.begin()))) return;
+      }
+    }
+  }
+
+  /// Where the next chunk or attachment begins, or another recording, after what is torn there. A recording that is
+  /// attached to this one has chunks that are not of this one: attachments are found whole, and of one whose own
+  /// beginning is damaged the magic tells. Two magics are the end of this recording and the beginning of another that
+  /// was joined to it; one is when what is torn holds no recording.
+  [[nodiscard]] std::optional<std::uint64_t> searchFrom(std::uint64_t torn) {
+    if (!is_data_) return recordingIn(torn, file_.size());
+    const bool may_hold = mayHoldRecording(file_, torn);
     bool is_inside = false;  // of a recording in an attachment
     std::uint64_t size = kSearchBytes;
-    for (; from + kRecordHeadBytes < file_.size(); from += size, size = std::min(2 * size, kRunBytes)) {
+    for (std::uint64_t from = torn + 1; from + kRecordHeadBytes < file_.size();
+         from += size, size = std::min(2 * size, kRunBytes)) {
       // Records that begin in this piece are looked at whole, and so is a magic: it ends behind it.
       const std::span<std::byte> window =
           storage_.resize(static_cast<std::size_t>(std::min(size + kMagic.size() - 1, file_.size() - from)));
@@ -172,6 +260,7 @@ class Scan {
       for (std::size_t i = 0; i < std::min<std::uint64_t>(size, window.size()); ++i) {
         if (std::ranges::equal(ByteView(window).subspan(i).first(std::min(kMagic.size(), window.size() - i)), kMagic)) {
           if (beginsRecording(file_, from + i + kMagic.size())) return from + i + kMagic.size();
+          if (!may_hold && beginsRecording(file_, from + i)) return from + i;
           is_inside = !is_inside;
         }
         const auto opcode = Opcode{std::to_integer<std::uint8_t>(window[i])};
@@ -187,8 +276,7 @@ class Scan {
   void take(const RecordPlace& place) {
     noteHiddenChunk(place);
     if (place.opcode != Opcode::kMessageIndex) closeMessageIndexes();
-    const bool belongs_to_run =
-        place.opcode == Opcode::kSchema || place.opcode == Opcode::kChannel || place.opcode == Opcode::kMessage;
+    const bool belongs_to_run = belongsToRun(place.opcode);
     if (!belongs_to_run || run_.length + place.length() > kRunBytes) closeRun();
     if (belongs_to_run) {
       if (run_.length == 0) run_.offset = place.offset;
@@ -248,8 +336,15 @@ class Scan {
   void takeExtent(const Extent& extent) {
     if (options_.on_progress) options_.on_progress(extent.offset, file_.size());
     Contents found{.extent = extent};
-    const bool is_sound = loader_.guarded(extent, [&] {
-      readContents(loader_.load(extent, storage_), declarations_, found);
+    Extent damaged = extent;
+    const bool is_sound = loader_.guarded(damaged, [&] {
+      try {
+        readContents(loader_.load(extent, storage_), declarations_, found);
+      } catch (const FormatError&) {
+        if (extent.is_chunk) torn_into_ = recordingBeyond(extent.offset, extent.offset + extent.length);
+        if (torn_into_) damaged.length = *torn_into_ - extent.offset;  // the rest is of that recording
+        throw;
+      }
       if (!found.undeclared.empty() && !options_.on_damage) throw FormatError(undeclaredIn(found).reason);
     });
     for (std::string& text : found.contradictions) contradict(std::move(text));
@@ -339,9 +434,14 @@ class Scan {
   }
 
   FileIndex finish() {
+    FileInfo& info = index_.info;
+    if (!info.is_complete && (!info.has_all_data || info.trailing_bytes > 0)) {
+      info.cuts.push_back(
+          {.offset = info.complete_bytes, .length = file_.size() - info.complete_bytes, .reason = info.problem});
+    }
     if (!cut_.empty()) {
-      FileInfo& info = index_.info;
       info.is_complete = info.has_all_data = false;
+      info.complete_bytes = cut_at_;
       info.problem = cut_ + (info.problem.empty() ? "" : "; " + info.problem);
     }
     Statistics& statistics = index_.statistics;
@@ -364,14 +464,16 @@ class Scan {
   Buffer storage_;
   FileIndex index_;
   Declarations declarations_;
-  bool is_first_ = true;                 // no record of the recording has been read yet
-  bool is_data_ = true;                  // and not the end of its data
-  bool is_closed_ = false;               // its footer and its magic have been read
-  std::string cut_;                      // the first recording that has no end, and that another one follows
-  std::optional<IndexedChunk> indexed_;  // the chunk that message indexes may follow
-  Opcode previous_{};                    // of the record before
-  std::optional<RecordPlace> hidden_;    // a record that may have been a chunk
-  Extent run_{.is_chunk = false};        // consecutive records outside of chunks; empty when length is 0
+  bool is_first_ = true;                    // no record of the recording has been read yet
+  bool is_data_ = true;                     // and not the end of its data
+  bool is_closed_ = false;                  // its footer and its magic have been read
+  std::string cut_;                         // the first recording that has no end, and that another one follows
+  std::uint64_t cut_at_ = 0;                // where that one ends
+  std::optional<std::uint64_t> torn_into_;  // the recording that begins in the chunk that was just taken
+  std::optional<IndexedChunk> indexed_;     // the chunk that message indexes may follow
+  Opcode previous_{};                       // of the record before
+  std::optional<RecordPlace> hidden_;       // a record that may have been a chunk
+  Extent run_{.is_chunk = false};           // consecutive records outside of chunks; empty when length is 0
 };
 
 }  // namespace

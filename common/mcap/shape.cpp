@@ -1,6 +1,9 @@
 #include "mcap/shape.hpp"
 
+#include <algorithm>
 #include <optional>
+
+#include "mcap/crc.hpp"
 
 namespace baton::mcap {
 namespace {
@@ -57,15 +60,20 @@ std::optional<std::uint64_t> knownBytes(const InputFile& file, const RecordPlace
   return is_sound ? std::optional(known) : std::nullopt;
 }
 
-/// Whether a record of a known kind lies there, whole. @param is_exact  with nothing after its known fields.
+/// Whether it can be a record of a known kind. @param is_exact  with nothing after its known fields.
+bool isKnown(const InputFile& file, const RecordPlace& place, bool is_exact) {
+  if (place.opcode == Opcode::kInvalid || place.opcode > Opcode::kDataEnd) return false;
+  if (place.body_length < leastBytes(place.opcode)) return false;
+  const std::optional<std::uint64_t> known = knownBytes(file, place);
+  return known && (!is_exact || *known == place.body_length);
+}
+
+/// Whether such a record lies there, whole.
 bool beginsRecord(const InputFile& file, std::uint64_t offset, bool is_exact) {
   const RecordPlace place{.opcode = Opcode{static_cast<std::uint8_t>(numberAt<std::uint8_t>(file, offset))},
                           .offset = offset,
                           .body_length = numberAt<std::uint64_t>(file, offset + 1)};
-  if (place.opcode == Opcode::kInvalid || place.opcode > Opcode::kDataEnd) return false;
-  if (place.body_length < leastBytes(place.opcode) || place.body_length >= file.size()) return false;
-  const std::optional<std::uint64_t> known = knownBytes(file, place);
-  return place.end() <= file.size() && known && (!is_exact || *known == place.body_length);
+  return place.body_length < file.size() && place.end() <= file.size() && isKnown(file, place, is_exact);
 }
 
 }  // namespace
@@ -75,6 +83,36 @@ bool fits(const InputFile& file, const RecordPlace& place) {
   if (!known || *known == place.body_length) return known.has_value();
   return (place.end() == file.size() || beginsRecord(file, place.end(), false)) &&
          !beginsRecord(file, place.offset + kRecordHeadBytes + *known, true);
+}
+
+bool isFollowed(const InputFile& file, const RecordPlace& place, const std::optional<RecordPlace>& next) {
+  constexpr Opcode kFirstPrivate{0x80};
+  if (next && next->opcode == Opcode::kHeader) return false;  // that of another recording
+  // The last byte of the magic in front of that has the look of one.
+  if (next && next->opcode == Opcode::kAttachmentIndex && hasMagic(file, place.end() + 1 - kMagic.size())) return false;
+  if (next) return next->opcode >= kFirstPrivate || isKnown(file, *next, false);
+  return place.end() == file.size() || hasMagic(file, place.end());
+}
+
+bool mayHoldRecording(const InputFile& file, std::uint64_t offset) {
+  const Opcode opcode{static_cast<std::uint8_t>(numberAt<std::uint8_t>(file, offset))};
+  if (opcode == Opcode::kInvalid || opcode > Opcode::kDataEnd) return true;
+  if (opcode != Opcode::kAttachment) return false;
+  const std::uint64_t name = offset + kRecordHeadBytes + 8 + 8;
+  const std::uint64_t media_type = name + 4 + numberAt<std::uint32_t>(file, name);
+  return hasMagic(file, media_type + 4 + numberAt<std::uint32_t>(file, media_type) + 8);
+}
+
+std::uint32_t crcOf(const InputFile& file, std::uint64_t begin, std::uint64_t end) {
+  constexpr std::uint64_t kBlockBytes = 1 << 20;
+  Buffer storage;
+  std::uint32_t crc = 0;
+  for (std::uint64_t offset = begin; offset < end; offset += kBlockBytes) {
+    const std::span<std::byte> block = storage.resize(static_cast<std::size_t>(std::min(kBlockBytes, end - offset)));
+    file.read(offset, block);
+    crc = crc32(block, crc);
+  }
+  return crc;
 }
 
 bool hasMagic(const InputFile& file, std::uint64_t offset) {

@@ -1,6 +1,8 @@
 /// Whether bytes of a file have the shape of a record: where reading can continue after damage.
 #pragma once
 
+#include <optional>
+
 #include "mcap/index.hpp"
 
 namespace baton::mcap {
@@ -19,6 +21,17 @@ template <std::unsigned_integral Number>
 /// such a record from other bytes. A later version of the format may have added fields to a record: then another one
 /// follows its end. Where one follows its known fields, it is the record's own length that is damaged.
 [[nodiscard]] bool fits(const InputFile& file, const RecordPlace& place);
+
+/// Whether something follows the record that can follow one: another, the magic, or the end of the file.
+/// @param next  what has a record's head there.
+[[nodiscard]] bool isFollowed(const InputFile& file, const RecordPlace& place, const std::optional<RecordPlace>& next);
+
+/// Whether a recording may lie in the record there, in front of anything that follows it: not in one of a kind that
+/// holds none, nor in an attachment that begins otherwise.
+[[nodiscard]] bool mayHoldRecording(const InputFile& file, std::uint64_t offset);
+
+/// The CRC-32 of the bytes from `begin` up to `end`, read in pieces.
+[[nodiscard]] std::uint32_t crcOf(const InputFile& file, std::uint64_t begin, std::uint64_t end);
 
 [[nodiscard]] bool hasMagic(const InputFile& file, std::uint64_t offset);
 

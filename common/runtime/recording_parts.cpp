@@ -17,7 +17,7 @@ namespace {
 /// Whether it is a part of an earlier recording of that name, by its own word.
 bool isPartOf(const fs::path& file, const fs::path& recording) {
   try {
-    const mcap::Reader reader(file);
+    const mcap::Reader reader(file, {.trusts_summary = true});
     return std::ranges::any_of(reader.metadata(), [&](const mcap::Metadata& one) {
       return one.name == "baton.part" && mcap::valueOf(one.values, "first") == recording.filename().string();
     });

@@ -34,7 +34,10 @@ std::string verdictOn(const mcap::Recovery& found) {
     return fmt::format("{} of its bytes could not be read, and {} messages more are lost", bytesOf(found.lost),
                        messages);
   }
-  if (!found.lost.empty()) return fmt::format("{} of its bytes could not be read", bytesOf(found.lost));
+  if (const std::uint64_t bytes = bytesOf(found.lost); bytes > 0) {
+    return fmt::format("{} of its bytes could not be read", bytes);
+  }
+  if (!found.lost.empty()) return "all of its bytes could be read, and something is missing";
   if (found.is_whole) return "it was whole, and is copied";
   if (found.is_changed)
     return "bytes between its chunks were changed, as the CRC of its data says: something may be lost";
@@ -45,7 +48,7 @@ std::string verdictOn(const mcap::Recovery& found) {
 void printText(const RecoverRequest& request, const mcap::Recovery& found) {
   fmt::print("{}: {}\n", request.in, escaped(verdictOn(found)));
   for (const mcap::Damage& damage : found.lost) {
-    if (damage.messages > 0) {
+    if (damage.messages > 0 || damage.length == 0) {
       fmt::print("lost        {}\n", escaped(mcap::describe(damage)));
     } else {
       fmt::print("lost        {} bytes from byte {} on: {}\n", damage.length, damage.offset, escaped(damage.reason));

@@ -257,7 +257,101 @@ TEST_F(ContradictionTest, ARecordingWithoutAnEndBeforeAnotherOneIsACut) {
   EXPECT_FALSE(reader.info().is_complete);
   EXPECT_TRUE(mentions(reader.info(), "is cut: it has no end")) << textOf(reader.info());
   EXPECT_EQ(samplesOf(reader).size(), 20U);
-  EXPECT_FALSE(recovered().lost.empty());
+  EXPECT_EQ(reader.info().complete_bytes, first.cut().size());
+  const Recovery found = recovered();
+  ASSERT_EQ(found.lost.size(), 1U);
+  EXPECT_EQ(found.lost[0].offset, first.cut().size()) << "where it was cut, not where the file ends";
+  EXPECT_EQ(found.lost[0].length, 0U);
+  EXPECT_NE(describe(found.lost[0]).find("something is missing at byte"), std::string::npos);
+}
+
+TEST_F(ContradictionTest, RecordingsThatAreCutOneAfterAnotherAreLossesEach) {
+  IndexedFile file;
+  fill(file);
+  const std::size_t size = file.cut().size();
+  Bytes bytes = file.cut();
+  append(bytes, file.cut());
+  append(bytes, ByteView(file.finished()).first(size - 1));
+  saveFile(path, bytes);
+  const Recovery found = recovered();
+  ASSERT_EQ(found.lost.size(), 3U);
+  EXPECT_EQ(found.lost[0].offset, size);
+  EXPECT_EQ(found.lost[1].offset, 2 * size);
+  EXPECT_EQ(found.lost[2].offset + found.lost[2].length, 3 * size - 1);
+  EXPECT_EQ(found.lost[0].length + found.lost[1].length, 0U);
+  EXPECT_GT(found.lost[2].length, 0U);
+}
+
+TEST_F(ContradictionTest, ARecordingThatIsCutAnywhereDoesNotMixWithTheNext) {
+  IndexedFile first, second;
+  fill(first);
+  second.channel(channelOf(1, "next", 0));  // in its first chunk only
+  for (std::uint64_t chunk = 0; chunk < 20; ++chunk) {
+    for (std::uint64_t i = 0; i < 8; ++i) second.message(1, 5000 + 8 * chunk + i);
+    second.closeChunk();
+  }
+  const Bytes one = first.finished(), two = second.finished();
+  for (std::size_t size = first.chunks[0].chunk_offset; size < one.size(); ++size) {
+    SCOPED_TRACE("cut after " + std::to_string(size) + " of " + std::to_string(one.size()) + " bytes");
+    Bytes file(one.begin(), one.begin() + static_cast<std::ptrdiff_t>(size));
+    append(file, two);
+    saveFile(path, file);
+    std::vector<Damage> damage;
+    ReaderOptions options;
+    options.on_damage = [&](const Damage& found) { damage.push_back(found); };
+    const Reader reader(path, options);
+    ASSERT_EQ(reader.info().beginnings, (std::vector<std::uint64_t>{0, size})) << textOf(reader.info());
+    EXPECT_FALSE(reader.info().is_complete);
+    EXPECT_EQ(reader.info().complete_bytes, size);
+    EXPECT_EQ(samplesOf(reader, {.topics = {"next"}}).size(), 160U);
+    const auto chunks = std::ranges::count_if(
+        first.chunks, [&](const ChunkIndex& chunk) { return chunk.chunk_offset + chunk.chunk_length <= size; });
+    EXPECT_EQ(samplesOf(reader).size(), 160U + 5U * static_cast<std::size_t>(chunks));
+    for (const Damage& lost : damage) EXPECT_LE(lost.offset + lost.length, size) << describe(lost);
+  }
+}
+
+TEST_F(ContradictionTest, ADamagedChunkThatHoldsARecordingIsNotCut) {
+  IndexedFile inner;
+  fill(inner);
+  FileBuilder file;
+  Bytes records;
+  appendChannel(records, channelOf(1, "files", 0));
+  appendMessage(records, {.channel_id = ChannelId{1}, .log_time_ns = 1, .data = inner.finished()});
+  file.chunk(records, 1, 1);
+  file.bytes[file.bytes.size() - 20] ^= std::byte{1};  // in the footer of that recording
+  file.finish();
+  saveFile(path, file.bytes);
+  const Recovery found = recovered();
+  EXPECT_EQ(found.messages, 0U);
+  EXPECT_EQ(found.lost.size(), 1U);
+  EXPECT_EQ(found.info.beginnings.size(), 1U);
+}
+
+TEST_F(ContradictionTest, ADamagedMessageIndexIsNamedThoughTheSummaryAgrees) {
+  IndexedFile file;
+  file.channel(channelOf(1, "a", 0));
+  for (std::uint64_t chunk = 0; chunk < 2; ++chunk) {
+    for (std::uint64_t i = 0; i < 3; ++i) file.message(1, 10 * chunk + i);
+    file.closeChunk();
+  }
+  const Bytes sound = file.finished();
+  for (const ChunkIndex& chunk : file.chunks) {
+    Bytes bytes = sound;
+    const std::size_t index = chunk.chunk_offset + chunk.chunk_length;
+    bytes[index + kRecordHeadBytes + 2] = std::byte{15};  // of 48 bytes of entries
+    saveFile(path, bytes);
+    std::vector<Damage> damage;
+    ReaderOptions options;
+    options.on_damage = [&](const Damage& found) { damage.push_back(found); };
+    EXPECT_EQ(samplesOf(Reader(path, options)).size(), 6U);
+    ASSERT_EQ(damage.size(), 1U);
+    EXPECT_EQ(damage[0].offset, index);
+    const Recovery found = recovered();
+    EXPECT_EQ(found.messages, 6U);
+    EXPECT_EQ(found.lost.size(), 1U);
+    EXPECT_FALSE(found.is_whole);
+  }
 }
 
 TEST_F(ContradictionTest, DamageAtTheEndOfARecordingDoesNotMixItWithTheNext) {

@@ -65,6 +65,52 @@ TEST_F(ReaderTest, ReadsOnlyTheChunksATimeRangeNeeds) {
   EXPECT_THROW(logTimesOf(reader), FormatError);
 }
 
+TEST_F(ReaderTest, ASummaryCanBeTakenByItsWord) {
+  writeSteps(3000);
+  Bytes file = loadFile(path);
+  file[rawRecords(file)[1].offset + 100] ^= std::byte{0xFF};  // in the first chunk's data: which are not looked at
+  saveFile(path, file);
+  std::vector<Damage> damage;
+  ReaderOptions options;
+  options.trusts_summary = true;
+  options.on_damage = [&](const Damage& found) { damage.push_back(found); };
+  bool is_read = false;
+  options.on_progress = [&](std::uint64_t, std::uint64_t) { is_read = true; };
+  const Reader trusting(path, options);
+  EXPECT_EQ(trusting.statistics().message_count, 3000U);
+  EXPECT_FALSE(is_read);
+  // Without one it is read whole.
+  const std::vector<RawRecord> records = rawRecords(file);
+  std::filesystem::resize_file(path, std::ranges::find(records, 0x0F, &RawRecord::opcode)->offset);
+  const Reader cut(path, options);
+  EXPECT_TRUE(is_read);
+  EXPECT_LT(cut.statistics().message_count, 3000U);
+  EXPECT_EQ(damage.size(), 1U);
+}
+
+TEST_F(ReaderTest, ShowsAProgramThatAFileIsBeingOpened) {
+  writeSteps(3000);
+  std::vector<std::uint64_t> seen;
+  setOpeningSink([&](const std::filesystem::path& file, std::uint64_t done, std::uint64_t of) {
+    EXPECT_EQ(file, path);
+    EXPECT_EQ(of, std::filesystem::file_size(path));
+    seen.push_back(done);
+  });
+  const Reader reader(path);
+  EXPECT_GT(seen.size(), 10U);
+  EXPECT_TRUE(std::ranges::is_sorted(seen));
+  EXPECT_EQ(seen.back(), std::filesystem::file_size(path));
+  seen.clear();
+  ReaderOptions options;
+  options.on_progress = [](std::uint64_t, std::uint64_t) {};
+  const Reader other(path, options);
+  EXPECT_TRUE(seen.empty()) << "it is shown already";
+  saveFile(path, asBytes("no recording"));
+  EXPECT_THROW(Reader{path}, FormatError);
+  EXPECT_EQ(seen, std::vector<std::uint64_t>{12}) << "the line is free again";
+  setOpeningSink({});
+}
+
 TEST_F(ReaderTest, OverlappingChunksComeInLogTimeOrder) {
   FileBuilder file;
   Bytes first = channelRecord(1);

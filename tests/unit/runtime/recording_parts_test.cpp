@@ -6,6 +6,9 @@
 
 #include <fstream>
 
+#include "mcap/reader.hpp"
+#include "mcap/writer.hpp"
+
 namespace baton {
 namespace {
 namespace fs = std::filesystem;
@@ -31,6 +34,26 @@ TEST(RecordingParts, AreFoundAmongOtherFiles) {
             (std::vector<fs::path>{folder / "run_0001.mcap", folder / "run_0002.mcap", folder / "run_10000.mcap"}));
   EXPECT_TRUE(furtherPartsOf(folder / "absent" / "run.mcap").empty());
   fs::remove_all(folder);
+}
+
+TEST(RecordingParts, AreKnownWithoutReadingThem) {
+  std::string pattern = (fs::temp_directory_path() / "baton-parts-XXXXXX").string();
+  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+  const fs::path part = fs::path(pattern) / "run_0001.mcap";
+  {
+    mcap::Writer writer(part);
+    writer.addMetadata("baton.part", {{"first", "run.mcap"}, {"index", "1"}});
+    writer.write(writer.addChannel("t", "cdr", mcap::kNoSchema), 0, 0, 0, mcap::asBytes("data"));
+    writer.close();
+  }
+  const std::uint64_t size = fs::file_size(part);
+  std::vector<std::uint64_t> seen;
+  mcap::setOpeningSink([&](const fs::path&, std::uint64_t done, std::uint64_t) { seen.push_back(done); });
+  (void)claimRecording("--out", (fs::path(pattern) / "run.mcap").string(), true, true);
+  mcap::setOpeningSink({});
+  EXPECT_EQ(seen, std::vector<std::uint64_t>{size}) << "it was opened, and no chunk of it was read";
+  EXPECT_FALSE(fs::exists(part));
+  fs::remove_all(pattern);
 }
 
 }  // namespace
