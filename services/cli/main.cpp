@@ -1,14 +1,19 @@
 // The command line people type.
 #include <CLI/CLI.hpp>
+#include <functional>
 
 #include "commands.hpp"
+#include "mcap/reader.hpp"
+#include "opening_progress.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/log.hpp"
 #include "runtime/run.hpp"
 
 int main(int argc, char** argv) {
+  static baton::OpeningProgress openings;
   return baton::runGuarded("baton", [&] {
     baton::setUpLog("baton");
+    baton::mcap::setOpeningSink(std::ref(openings));
     baton::ExitCode exit_code = baton::ExitCode::kOk;
     CLI::App app{
         "Baton, a control laboratory on DDS: robot, wall, trajectory and controllers are processes of their own;\n"

@@ -28,7 +28,7 @@ HashedRun hashWholeRun(const mcap::FileList& file) {
   for (const char* topic : {dds::topics::kJointCommand.name, dds::topics::kContact.name}) {
     expectNotLeftOut(reader, topic, file);
   }
-  return hashRun(file);
+  return hashRun(reader, file);
 }
 
 /// Prints the hash and says whether the payloads give it.

@@ -32,8 +32,9 @@ std::optional<std::uint64_t> HashedRun::firstBroken() const {
   return std::nullopt;
 }
 
-HashedRun hashRun(const mcap::FileList& file) {
-  const mcap::JoinedReader reader(file);
+HashedRun hashRun(const mcap::FileList& file) { return hashRun(mcap::JoinedReader(file), file); }
+
+HashedRun hashRun(const mcap::JoinedReader& reader, const mcap::FileList& file) {
   expectTopic(reader, dds::topics::kPlantState.name, file);
   const std::uint64_t begin_ns = lastTakeBegin(reader);
   HashedRun run;

@@ -30,6 +30,8 @@ struct HashedRun {
 
 /// Throws UsageError when the file has no states, and what reading a recording throws.
 [[nodiscard]] HashedRun hashRun(const mcap::FileList& file);
+/// Of a recording that is open. @param file  its files, for messages.
+[[nodiscard]] HashedRun hashRun(const mcap::JoinedReader& reader, const mcap::FileList& file);
 
 /// Where two runs part: the first payload that differs. One that only one of the two has is no difference by itself: a
 /// process may have died before it sent it, and the next state says whether the plant used it.
