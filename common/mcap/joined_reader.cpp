@@ -20,9 +20,14 @@ std::optional<Id> numberOf(const std::map<Id, Value>& known, Value wanted, const
   return std::nullopt;
 }
 
+/// The smallest that is free; 0 means none.
 template <class Id, class Value>
-Id nextNumber(const std::map<Id, Value>& known) {
-  const unsigned next = known.empty() ? 1U : static_cast<unsigned>(known.rbegin()->first) + 1U;
+Id freeNumber(const std::map<Id, Value>& known) {
+  unsigned next = 1;
+  for (const auto& [id, one] : known) {
+    if (static_cast<unsigned>(id) > next) break;
+    next = static_cast<unsigned>(id) + 1;
+  }
   if (next > std::numeric_limits<std::uint16_t>::max()) {
     throw UsageError("expected files with 65535 channels and schemas together at most, found more");
   }
@@ -57,7 +62,10 @@ JoinedReader::JoinedReader(const FileList& files, DamageSink on_damage) {
 
 void JoinedReader::join(const FileList& files) {
   info_.header = file(0).info().header;
-  info_.is_complete = info_.has_all_data = info_.has_summary = true;
+  info_.is_complete = info_.has_all_data = true;
+  info_.beginnings.clear();
+  bool has_other_problem = false;
+  std::vector<const Reader*> before;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Part& part = parts_[i];
     const FileInfo& info = part.reader->info();
@@ -65,13 +73,15 @@ void JoinedReader::join(const FileList& files) {
     for (const std::string& text : info.contradictions) {
       info_.contradictions.push_back(files.paths()[i].string() + ": " + text);
     }
+    has_other_problem = has_other_problem || (!info.problem.empty() && !info.is_unindexed);
+    for (const std::uint64_t one : info.beginnings) info_.beginnings.push_back(info_.file_bytes + one);
     info_.file_bytes += info.file_bytes;
     info_.trailing_bytes += info.trailing_bytes;
     info_.complete_bytes += info.complete_bytes;
     info_.is_complete = info_.is_complete && info.is_complete;
     info_.has_all_data = info_.has_all_data && info.has_all_data;
-    info_.has_summary = info_.has_summary && info.has_summary;
-    if (i > 0) part.repeated = Repeated(*part.reader);
+    if (i > 0) part.repeated = Repeated(*part.reader, before);
+    before.push_back(part.reader.get());
     joinChannels(part);
     joinCounts(part);
     for (const AttachmentIndex& attachment : part.reader->attachments()) {
@@ -79,6 +89,7 @@ void JoinedReader::join(const FileList& files) {
       attached_to_.push_back(i);
     }
   }
+  info_.is_unindexed = !info_.problem.empty() && !has_other_problem;
 }
 
 void JoinedReader::joinChannels(Part& part) {
@@ -90,13 +101,13 @@ void JoinedReader::joinChannels(Part& part) {
       joined.schema_id = numberOf(schemas_, own->second, {}).value_or(SchemaId{});
       if (joined.schema_id == SchemaId{}) {
         Schema added = own->second;
-        joined.schema_id = added.id = nextNumber(schemas_);
+        joined.schema_id = added.id = freeNumber(schemas_);
         schemas_.emplace(added.id, std::move(added));
       }
       schema = &schemas_.at(joined.schema_id);
     }
-    joined.id = numberOf(channels_, joined, taken).value_or(ChannelId{});
-    if (joined.id == ChannelId{}) joined.id = channels_.contains(id) ? nextNumber(channels_) : id;
+    const std::optional<ChannelId> same = numberOf(channels_, joined, taken);
+    joined.id = same ? *same : channels_.contains(id) ? freeNumber(channels_) : id;
     taken.insert(joined.id);
     part.routes[id] = {&channels_.try_emplace(joined.id, joined).first->second, schema};
   }

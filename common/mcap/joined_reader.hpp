@@ -2,8 +2,8 @@
 /// another. Nothing is copied; memory is that of the chunks being read, of few files at a time.
 ///
 /// A channel that is the same in several files (topic, type, metadata) is one channel here; those of the first file
-/// keep their numbers. What a file repeats from before its beginning is left out when that is in a file before it. A
-/// single file is read as Reader reads it.
+/// keep their numbers. What a file repeats from before its beginning is left out when that is in a file before it, by
+/// its times (see Repeated). A single file is read as Reader reads it.
 #pragma once
 
 #include <cstdint>

@@ -9,10 +9,13 @@
 
 #include <cstdint>
 #include <map>
+#include <vector>
 
 #include "mcap/source.hpp"
 
 namespace baton::mcap {
+
+class Reader;
 
 inline constexpr const char* kRepeatedRecord = "baton.latched";
 
@@ -20,17 +23,28 @@ class Repeated {
  public:
   Repeated() = default;
   /// Of one file; reads their chunks. Nothing when the file repeats nothing.
-  explicit Repeated(const Source& file);
+  explicit Repeated(const Reader& file);
+  /// Only those that one of the files before it has, by their times: on the same channel (topic, type, metadata), in a
+  /// file that ends no earlier than they were published, and that or its channel's first message is no later.
+  Repeated(const Reader& file, const std::vector<const Reader*>& before);
 
   /// Whether the next message of a pass over the file is one of them. Messages of a channel come in their order.
   [[nodiscard]] bool takes(const MessageView& message);
   [[nodiscard]] std::uint64_t count() const { return count_; }
-  [[nodiscard]] const std::map<ChannelId, std::uint64_t>& counts() const { return left_; }
+  [[nodiscard]] const std::map<ChannelId, std::uint64_t>& counts() const { return counts_; }
 
  private:
+  template <class IsMeant>
+  void read(const Reader& file, const IsMeant& is_meant);
+
+  struct Beginning {
+    std::vector<bool> is_meant;  // of the messages that the file repeats, in their order
+    std::size_t passed = 0;
+  };
   std::uint64_t count_ = 0;
   std::uint64_t log_time_ns_ = 0;
-  std::map<ChannelId, std::uint64_t> left_;  // of each channel, to come
+  std::map<ChannelId, std::uint64_t> counts_;
+  std::map<ChannelId, Beginning> beginnings_;
 };
 
 /// The record's values.

@@ -35,7 +35,7 @@ struct Source {
   std::unique_ptr<mcap::MessageCursor> cursor;
   mcap::MessageView next;
   bool is_first_of_run = true;  // of the files that have the same run
-  mcap::Repeated repeated{};    // what it begins with from before, when a file before it may have that
+  mcap::Repeated repeated{};    // what it begins with from before and a file before it has
 
   [[nodiscard]] bool advance() {
     while (cursor->next(next)) {
@@ -57,11 +57,13 @@ std::vector<Source> openSources(const std::vector<std::string>& files) {
   for (Source& source : sources) {
     const std::string run = metadataValue(*source.reader, "baton.run", "run");
     const auto begin_ns = [](const Source& one) { return one.reader->statistics().start_time_ns; };
-    source.is_first_of_run =
-        run.empty() || std::ranges::none_of(sources, [&](const Source& other) {
-          return begin_ns(other) < begin_ns(source) && metadataValue(*other.reader, "baton.run", "run") == run;
-        });
-    if (!source.is_first_of_run) source.repeated = mcap::Repeated(*source.reader);
+    std::vector<const mcap::Reader*> before;  // of the same run
+    for (const Source& other : sources) {
+      const bool is_before = !run.empty() && begin_ns(other) < begin_ns(source);
+      if (is_before && metadataValue(*other.reader, "baton.run", "run") == run) before.push_back(other.reader.get());
+    }
+    source.is_first_of_run = before.empty();
+    if (!source.is_first_of_run) source.repeated = mcap::Repeated(*source.reader, before);
   }
   return sources;
 }

@@ -18,6 +18,7 @@ class JoinedReaderTest : public testing::Test {
     std::string topic;
     std::uint64_t time_ns;
     std::uint32_t sequence;
+    std::uint64_t publish_time_ns = 0;  // 0: that of the log
   };
   /// A file with a channel a topic, in the order of `topics`; the first `repeated` samples are from before.
   std::filesystem::path write(const std::string& name, const std::vector<std::string>& topics,
@@ -33,7 +34,8 @@ class JoinedReaderTest : public testing::Test {
       channels[topic] = writer.addChannel(topic, "cdr", schema, {{"writer", topic}});
     }
     for (const Sample& one : samples) {
-      writer.write(channels.at(one.topic), one.sequence, one.time_ns, one.time_ns, asBytes(name));
+      const std::uint64_t publish_time_ns = one.publish_time_ns == 0 ? one.time_ns : one.publish_time_ns;
+      writer.write(channels.at(one.topic), one.sequence, one.time_ns, publish_time_ns, asBytes(name));
     }
     writer.close();
     return path;
@@ -98,7 +100,8 @@ TEST_F(JoinedReaderTest, LogTimesInterleaveAndFilesFollowEachOtherInFileOrder) {
 
 TEST_F(JoinedReaderTest, WhatAFileRepeatsIsThereOnce) {
   const auto a = write("a.mcap", {"e", "x"}, {{"e", 10, 1}, {"x", 11, 1}, {"e", 12, 2}});
-  const auto b = write("b.mcap", {"e", "x"}, {{"e", 20, 1}, {"e", 20, 2}, {"e", 20, 3}, {"x", 20, 2}, {"e", 21, 4}}, 2);
+  const auto b =
+      write("b.mcap", {"e", "x"}, {{"e", 20, 1, 10}, {"e", 20, 2, 12}, {"e", 20, 3}, {"x", 20, 2}, {"e", 21, 4}}, 2);
   const Texts all{"e1", "x1", "e2", "e3", "x2", "e4"};
   for (const Order order : {Order::kLogTime, Order::kFile}) {
     EXPECT_EQ(read(JoinedReader(files({a, b})), {.order = order}), all);
@@ -111,6 +114,71 @@ TEST_F(JoinedReaderTest, WhatAFileRepeatsIsThereOnce) {
   EXPECT_EQ(read(JoinedReader(b)).size(), 5U) << "alone it has them";
   EXPECT_EQ(Repeated(Reader(b)).count(), 2U);
   EXPECT_EQ(JoinedReader(files({b, a})).repeated().count(), 2U) << "of the first file they are the beginning";
+}
+
+TEST_F(JoinedReaderTest, WhatAFileRepeatsIsThereWhereNoFileBeforeItHasIt) {
+  // Between the two: 3 of e, and all of f.
+  const auto a = write("a.mcap", {"e", "x"}, {{"e", 10, 1}, {"x", 11, 1}, {"e", 12, 2}});
+  const auto c = write("c.mcap", {"e", "f", "x"},
+                       {{"e", 30, 1, 10}, {"f", 30, 1, 11}, {"e", 30, 3, 21}, {"x", 30, 5}, {"e", 31, 4}}, 3);
+  const Texts all{"e1", "x1", "e2", "f1", "e3", "x5", "e4"};
+  for (const Order order : {Order::kLogTime, Order::kFile}) {
+    EXPECT_EQ(read(JoinedReader(files({a, c})), {.order = order}), all);
+  }
+  EXPECT_EQ(JoinedReader(files({a, c})).statistics().message_count, all.size());
+  const auto d = write("d.mcap", {"e", "f"}, {{"e", 40, 3, 21}, {"f", 40, 1, 11}, {"e", 40, 4, 31}, {"e", 41, 5}}, 3);
+  EXPECT_EQ(read(JoinedReader(files({a, c, d}))), (Texts{"e1", "x1", "e2", "f1", "e3", "x5", "e4", "e5"}))
+      << "c.mcap repeats 1 of f and 3 of e itself";
+}
+
+TEST_F(JoinedReaderTest, WhatWasPublishedBeforeTheFirstFileIsThereOnceWhenItHasIt) {
+  const auto a = write("a.mcap", {"e"}, {{"e", 10, 2, 5}, {"e", 11, 3}});
+  const auto b = write("b.mcap", {"e"}, {{"e", 20, 1, 4}, {"e", 20, 2, 5}, {"e", 20, 3, 11}, {"e", 21, 4}}, 3);
+  EXPECT_EQ(read(JoinedReader(files({a, b}))), (Texts{"e2", "e3", "e1", "e4"}));
+}
+
+TEST_F(JoinedReaderTest, ChannelsOfLargeNumbersLeaveRoomForOthers) {
+  // Where a file gives an id two meanings, the other one has the largest number.
+  const auto a = folder_.file("a.mcap");
+  FileBuilder built;
+  for (const char* topic : {"x", "y"}) {
+    appendChannel(built.bytes, {.id = ChannelId{1}, .topic = topic, .message_encoding = "cdr"});
+    appendMessage(built.bytes, {.channel_id = ChannelId{1}, .log_time_ns = 10});
+  }
+  built.finish();
+  saveFile(a, built.bytes);
+  const auto b = folder_.file("b.mcap");
+  Writer writer(b);
+  writer.write(writer.addChannel("z", "cdr", kNoSchema), 1, 20, 20, {});
+  writer.close();
+  const JoinedReader reader(files({a, b}), [](const auto&, const Damage&) {});
+  std::set<std::string> topics;
+  for (const auto& [id, channel] : reader.channels()) topics.insert(channel.topic);
+  EXPECT_EQ(topics, (std::set<std::string>{"x", "y", "z"}));
+}
+
+TEST_F(JoinedReaderTest, SummariesThatLeaveSomethingOutAreNoDamageInSeveralFilesEither) {
+  const auto a = write("a.mcap", {"x"}, {{"x", 10, 1}});
+  const auto b = folder_.file("b.mcap");
+  FileBuilder built;
+  const Channel channel{.id = ChannelId{1}, .topic = "x", .message_encoding = "cdr"};
+  appendChannel(built.bytes, channel);
+  appendMessage(built.bytes, {.channel_id = channel.id, .log_time_ns = 20});
+  appendDataEnd(built.bytes, {});
+  const std::uint64_t summary_start = built.bytes.size();
+  appendChannel(built.bytes, channel);  // and no statistics
+  appendFooter(built.bytes, {.summary_start = summary_start});
+  append(built.bytes, kMagic);
+  Bytes bytes = built.bytes;
+  saveFile(b, bytes);
+  ASSERT_TRUE(Reader(b).info().is_unindexed) << Reader(b).info().problem;
+  EXPECT_TRUE(JoinedReader(files({a, b})).info().is_unindexed);
+  EXPECT_FALSE(JoinedReader(files({a, a})).info().is_unindexed) << "nothing is left out";
+  const std::uint64_t second = JoinedReader(a).info().file_bytes;
+  EXPECT_EQ(JoinedReader(files({a, b})).info().beginnings, (std::vector<std::uint64_t>{0, second}));
+  bytes.resize(bytes.size() - 20);
+  saveFile(b, bytes);
+  EXPECT_FALSE(JoinedReader(files({a, b})).info().is_unindexed) << "it was cut";
 }
 
 TEST_F(JoinedReaderTest, AttachmentsAndMetadataAreThoseOfAll) {
