@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <sstream>
+#include <string_view>
 
+#include "dds/codec.hpp"
 #include "dds/history.hpp"
 #include "dds/topics.hpp"
 #include "mcap/lookup.hpp"
@@ -42,13 +44,27 @@ std::size_t depthOfOffers(const std::string& profiles) {
   return sum;
 }
 
+/// The take that a message says it is of; nothing when it is no such message.
+template <class T>
+std::optional<std::uint32_t> takeIn(const dds::Topic<T>&, mcap::ByteView bytes) {
+  T message;
+  return dds::decode(bytes, message) ? std::optional(message.take()) : std::nullopt;
+}
+
+bool is(const dds::TopicFacts* topic, const dds::TopicFacts& one) {
+  return topic != nullptr && std::string_view(topic->name) == one.name;
+}
+
 }  // namespace
 
 std::size_t latchedDepth(const std::string& topic, const mcap::StringMap& metadata) {
   const std::map<std::string, std::string> qos = recordedQos(metadata);
   const std::string durability = mcap::valueOf(qos, "durability");
+  if (announcesReset(batonTopic(topic, metadata))) return 1;
   if (const dds::TopicFacts* facts = dds::topics::called(topic); facts != nullptr && durability != "volatile") {
-    return dds::latchedDepth(facts->profile);
+    // Whoever asks leaves soon after, and the request with it. What was launched, only its request says.
+    const bool has_left = facts->profile == dds::Profile::kRequest && !is(facts, dds::topics::kLaunchRequest);
+    return has_left ? 0 : dds::latchedDepth(facts->profile);
   }
   if (durability == "transient_local") {
     if (mcap::valueOf(qos, "history") == "keep_all") return kKeepAll;
@@ -57,30 +73,67 @@ std::size_t latchedDepth(const std::string& topic, const mcap::StringMap& metada
   return depthOfOffers(mcap::valueOf(metadata, "offered_qos_profiles"));
 }
 
+const dds::TopicFacts* batonTopic(const std::string& topic, const mcap::StringMap& metadata) {
+  const dds::TopicFacts* facts = dds::topics::called(topic);
+  return facts != nullptr && mcap::valueOf(metadata, "type") == facts->type ? facts : nullptr;
+}
+
+bool announcesReset(const dds::TopicFacts* topic) { return is(topic, dds::topics::kRewind); }
+
+std::optional<std::uint32_t> takeBegunBy(const dds::TopicFacts* topic, mcap::ByteView bytes) {
+  msg::Rewind rewind;
+  const bool is_commit = announcesReset(topic) && dds::decode(bytes, rewind) && rewind.phase() == msg::REWIND_COMMIT;
+  return is_commit ? std::optional(rewind.take()) : std::nullopt;
+}
+
+bool isOfTakeBefore(std::uint32_t take, const dds::TopicFacts* topic, mcap::ByteView bytes) {
+  namespace topics = dds::topics;
+  // The plant plans nothing for a take before all have acknowledged that it has begun.
+  if (announcesReset(topic) || is(topic, topics::kSwapPlan) || is(topic, topics::kSwapAck)) return true;
+  // What is decided at its first step may come before the word of its beginning, from another writer.
+  const std::optional<std::uint32_t> own = is(topic, topics::kDecision)      ? takeIn(topics::kDecision, bytes)
+                                           : is(topic, topics::kSwapOutcome) ? takeIn(topics::kSwapOutcome, bytes)
+                                           : is(topic, topics::kSwapReport)  ? takeIn(topics::kSwapReport, bytes)
+                                                                             : std::nullopt;
+  return own && *own < take;
+}
+
 std::vector<LatchedMessage> latchedBefore(const mcap::Source& reader, const mcap::MessageFilter& filter) {
   if (filter.start_time_ns <= reader.statistics().start_time_ns) return {};
   mcap::MessageFilter before{.end_time_ns = filter.start_time_ns - 1};
-  std::map<mcap::ChannelId, std::size_t> depths;
+  struct Topic {
+    std::size_t depth = 0;
+    const dds::TopicFacts* facts = nullptr;
+    bool is_chosen = false;
+  };
+  std::map<mcap::ChannelId, Topic> topics;
   for (const auto& [id, channel] : reader.channels()) {
     const bool is_chosen = (filter.channels.empty() && filter.topics.empty()) ||
                            std::ranges::count(filter.channels, id) > 0 ||
                            std::ranges::count(filter.topics, channel.topic) > 0;
-    const std::size_t depth = is_chosen ? latchedDepth(channel.topic, channel.metadata) : 0;
-    if (depth == 0) continue;
-    depths[id] = depth;
+    const Topic topic{.depth = latchedDepth(channel.topic, channel.metadata),
+                      .facts = batonTopic(channel.topic, channel.metadata),
+                      .is_chosen = is_chosen};
+    // Resets are read in any case: they part what is chosen.
+    if (topic.depth == 0 || (!is_chosen && !announcesReset(topic.facts))) continue;
+    topics[id] = topic;
     before.channels.push_back(id);
   }
-  if (depths.empty()) return {};  // an empty filter would be all
+  // An empty filter would be all.
+  if (std::ranges::none_of(topics, [](const auto& entry) { return entry.second.is_chosen; })) return {};
   RecordedTypes types([](const std::string&) {});
   LatchedSamples<mcap::MessageView> latched(kMostBytes);
   reader.forEachMessage(before, [&](const mcap::MessageView& message) {
     const schema::Type* type = types.typeOf(message);
     const std::string instance = type == nullptr ? "" : schema::instanceOf(*type, message.data);
     const mcap::ChannelId id = message.channel->id;
-    latched.keep(static_cast<std::size_t>(id), instance, depths.at(id), message, message.data);
+    const Topic& topic = topics.at(id);
+    latched.keep(static_cast<std::size_t>(id), instance, topic.depth, message, message.data, topic.facts);
   });
   std::vector<LatchedMessage> result;
-  latched.forEach([&](const auto& sample) { result.push_back({sample.head, sample.bytes}); });
+  latched.forEach([&](const auto& sample) {
+    if (topics.at(sample.head.channel->id).is_chosen) result.push_back({sample.head, sample.bytes});
+  });
   for (LatchedMessage& one : result) one.view.data = one.bytes;
   return result;
 }

@@ -1,6 +1,9 @@
 /// What a late joiner is given: of each writer whose topic is transient local the latest samples, as many as the writer
 /// keeps, of each instance. A replay, a cut, a part of a split recording and a ring that begin in the middle begin with
 /// these.
+///
+/// A reset of the run parts what is kept: its announcement is kept as well, although its topic is volatile, since a
+/// file that begins after it would not know of which take it is; what was decided in takes before it is kept no more.
 #pragma once
 
 #include <cstddef>
@@ -9,18 +12,33 @@
 #include <limits>
 #include <list>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "mcap/source.hpp"
 
+namespace baton::dds {
+struct TopicFacts;
+}
+
 namespace baton {
 
 /// How many samples of an instance a recorded writer kept for late joiners, by its topic and its channel's metadata: of
-/// Baton's topics what their profile says; of others the depth in the recorded QoS, and the last one where that says
-/// transient local without a depth. 0 for none.
+/// Baton's topics what their profile says, but none of requests other than to launch, and one of resets; of others the
+/// depth in the recorded QoS, and the last one where that says transient local without a depth. 0 for none.
 [[nodiscard]] std::size_t latchedDepth(const std::string& topic, const mcap::StringMap& metadata);
+
+/// The facts of a topic of Baton by its name and its type, which is in the channel's metadata; null for any other.
+[[nodiscard]] const dds::TopicFacts* batonTopic(const std::string& topic, const mcap::StringMap& metadata);
+
+/// Of samples of Baton's topics, with the facts that batonTopic() gives; null says nothing of resets.
+[[nodiscard]] bool announcesReset(const dds::TopicFacts* topic);
+/// The take that begins with this sample; nothing when it commits no reset.
+[[nodiscard]] std::optional<std::uint32_t> takeBegunBy(const dds::TopicFacts* topic, mcap::ByteView bytes);
+/// Whether a sample that came before this take began was of a take before it, and says nothing of this one.
+[[nodiscard]] bool isOfTakeBefore(std::uint32_t take, const dds::TopicFacts* topic, mcap::ByteView bytes);
 
 /// Keeps them while samples go by. @tparam Head  what is known of a sample, without its bytes.
 template <class Head>
@@ -35,20 +53,23 @@ class LatchedSamples {
   explicit LatchedSamples(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
   /// @param depth  of the stream's history; nothing is kept for 0.
-  void keep(std::size_t stream, const std::string& instance, std::size_t depth, const Head& head,
-            mcap::ByteView bytes) {
+  /// @param topic  when it is one of Baton's: of resets only a commit is kept, and what it ends goes.
+  void keep(std::size_t stream, const std::string& instance, std::size_t depth, const Head& head, mcap::ByteView bytes,
+            const dds::TopicFacts* topic = nullptr) {
     if (depth == 0) return;
+    if (announcesReset(topic)) {
+      const std::optional<std::uint32_t> take = takeBegunBy(topic, bytes);
+      if (!take) return;
+      forgetTakesBefore(*take);
+    }
     const Key key{stream, instance};
     History& history = histories_[key];
-    samples_.push_back({{head, {bytes.begin(), bytes.end()}}, key});
+    if (!history.empty()) superseded_.emplace(history.back()->number, history.back());
+    samples_.push_back({{head, {bytes.begin(), bytes.end()}}, key, topic, ++last_number_});
     history.push_back(std::prev(samples_.end()));
     bytes_ += bytes.size();
     while (history.size() > depth) drop(history.front());
-    for (auto oldest = samples_.begin(); bytes_ > max_bytes_ && oldest != samples_.end();) {
-      const auto next = std::next(oldest);
-      if (histories_.at(oldest->key).size() > 1) drop(oldest);
-      oldest = next;
-    }
+    while (bytes_ > max_bytes_ && !superseded_.empty()) drop(superseded_.begin()->second);
   }
   /// Calls f(sample) in the order in which they were kept.
   template <class F>
@@ -58,6 +79,7 @@ class LatchedSamples {
   void clear() {
     samples_.clear();
     histories_.clear();
+    superseded_.clear();
     bytes_ = 0;
   }
   [[nodiscard]] std::size_t size() const { return samples_.size(); }
@@ -68,11 +90,28 @@ class LatchedSamples {
   struct Kept {
     Sample sample;
     Key key;
+    const dds::TopicFacts* topic;
+    std::uint64_t number;  // in the order in which they were kept
   };
-  using History = std::deque<typename std::list<Kept>::iterator>;
+  using Place = typename std::list<Kept>::iterator;
+  using History = std::deque<Place>;
 
-  void drop(typename std::list<Kept>::iterator kept) {
-    histories_.at(kept->key).pop_front();  // its history's oldest, as samples lie in their order
+  void forgetTakesBefore(std::uint32_t take) {
+    for (Place one = samples_.begin(); one != samples_.end();) {
+      const Place next = std::next(one);
+      if (isOfTakeBefore(take, one->topic, one->sample.bytes)) drop(one);
+      one = next;
+    }
+  }
+  void drop(Place kept) {
+    History& history = histories_.at(kept->key);
+    if (history.front() == kept) {
+      history.pop_front();
+    } else {
+      std::erase(history, kept);
+    }
+    if (!history.empty()) superseded_.erase(history.back()->number);  // where it is the latest now
+    superseded_.erase(kept->number);
     bytes_ -= kept->sample.bytes.size();
     samples_.erase(kept);
   }
@@ -81,6 +120,8 @@ class LatchedSamples {
   std::size_t bytes_ = 0;
   std::list<Kept> samples_;
   std::map<Key, History> histories_;
+  std::map<std::uint64_t, Place> superseded_;  // those that may go, by number: of their instance there is a later one
+  std::uint64_t last_number_ = 0;
 };
 
 /// A message that is given again; what it points at belongs to the reader.

@@ -6,6 +6,14 @@
 #include "mcap/lookup.hpp"
 
 namespace baton {
+namespace {
+
+std::optional<std::string> certificateText(const mcap::Source& reader) {
+  std::optional<std::string> text = attachmentText(reader, "certificate.json");
+  return text ? text : attachmentText(reader, "original_certificate.json");
+}
+
+}  // namespace
 
 std::optional<std::string> attachmentText(const mcap::Source& reader, const std::string& name) {
   for (const mcap::AttachmentIndex& index : reader.attachments()) {
@@ -36,10 +44,10 @@ bool hasTopic(const mcap::Source& reader, const std::string& topic) {
   });
 }
 
+bool hasCertificate(const mcap::Source& reader) { return certificateText(reader).has_value(); }
+
 bool isLeftOut(const mcap::Source& reader, const std::string& topic) {
-  auto text = attachmentText(reader, "certificate.json");
-  if (!text) text = attachmentText(reader, "original_certificate.json");
-  const nlohmann::json certificate = nlohmann::json::parse(text.value_or(""), nullptr, false);
+  const nlohmann::json certificate = nlohmann::json::parse(certificateText(reader).value_or(""), nullptr, false);
   const auto listOf = [&](const char* key) {
     const auto list = certificate.is_object() ? certificate.find(key) : certificate.end();
     return list != certificate.end() && list->is_array() ? *list : nlohmann::json::array();

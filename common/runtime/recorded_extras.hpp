@@ -20,6 +20,9 @@ namespace baton {
 /// Whether a message of the topic is in the recording.
 [[nodiscard]] bool hasTopic(const mcap::Source& reader, const std::string& topic);
 
+/// Whether a certificate says what was recorded: its own, or in a copy that of the whole.
+[[nodiscard]] bool hasCertificate(const mcap::Source& reader);
+
 /// Whether the topic was left out of the recording on purpose: by its certificate, or by a copy that took only some
 /// topics of one that had it.
 [[nodiscard]] bool isLeftOut(const mcap::Source& reader, const std::string& topic);

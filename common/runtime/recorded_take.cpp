@@ -14,7 +14,9 @@ Take lastTakeByStates(const mcap::Source& reader) {
   std::map<mcap::ChannelId, std::uint64_t> steps;
   forEachMessageOf(dds::topics::kPlantState, reader, 0, [&](const msg::PlantState& state, const auto& view) {
     const auto [step, is_first] = steps.try_emplace(view.channel->id, state.step());
-    if (!is_first && state.step() < step->second) last = {.number = last.number + 1, .begin_ns = view.log_time_ns};
+    if (!is_first && state.step() < step->second) {
+      last = {.number = last.number + 1, .begin_ns = view.log_time_ns, .resets = last.resets + 1};
+    }
     step->second = state.step();
   });
   return last;
@@ -26,11 +28,13 @@ std::uint64_t lastTakeBegin(const mcap::Source& reader) { return lastTake(reader
 
 Take lastTake(const mcap::Source& reader) {
   const char* topic = dds::topics::kRewind.name;
-  if (!hasTopic(reader, topic) && isLeftOut(reader, topic)) return lastTakeByStates(reader);
+  if (!hasTopic(reader, topic) && (isLeftOut(reader, topic) || !hasCertificate(reader))) {
+    return lastTakeByStates(reader);
+  }
   Take last;
   forEachMessageOf(dds::topics::kRewind, reader, 0, [&](const msg::Rewind& rewind, const auto& view) {
     if (rewind.phase() != msg::REWIND_COMMIT || view.log_time_ns < last.begin_ns) return;
-    last = {.number = rewind.take(), .begin_ns = view.log_time_ns};
+    last = {.number = rewind.take(), .begin_ns = view.log_time_ns, .resets = last.resets + 1};
   });
   return last;
 }

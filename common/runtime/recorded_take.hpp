@@ -7,12 +7,13 @@
 
 namespace baton {
 
-/// The last take of a run: how often it has been reset before, and the log time from which on everything belongs to it;
-/// 0 when it never was. Where the topic that announces a reset was left out, a take begins where the steps of the
-/// states go back.
+/// The last take of a run, and the log time from which on everything belongs to it; 0 when it never was reset. Where
+/// the topic that announces a reset was left out, or may have been, as nothing says what was recorded, a take begins
+/// where the steps of the states go back.
 struct Take {
-  std::uint32_t number = 0;
+  std::uint32_t number = 0;  // as in its messages: resets that were called off are counted
   std::uint64_t begin_ns = 0;
+  std::uint32_t resets = 0;  // before it, that the recording knows of
 };
 [[nodiscard]] Take lastTake(const mcap::Source& reader);
 /// Where it begins.

@@ -50,16 +50,18 @@ bool Ring::push(const Sample& sample) {
   std::ranges::copy(sample.payload, memory_.get() + next_ + sizeof sample);  // of none, memcpy would want an address
   next_ += size;
   ++count_;
+  left_out_ += sample.is_left_out ? 1 : 0;
   used_ += size;
   return true;
 }
 
 void Ring::popOldest() {
   const Sample sample = sampleAt(first_);
-  older_.keep(sample.stream, "", sample.latched, sample, sample.payload);
+  older_.keep(sample.stream, "", sample.latched, sample, sample.payload, sample.facts);
   const std::size_t size = sizeOf(sample);
   first_ += size;
   --count_;
+  left_out_ -= sample.is_left_out ? 1 : 0;
   used_ -= size;
   if (first_ == end_ && count_ > 0) {
     first_ = 0;
@@ -71,7 +73,7 @@ void Ring::forEach(const std::function<void(const Sample&)>& callback) const {
   std::size_t at = first_;
   for (std::size_t i = 0; i < count_; ++i) {
     const Sample sample = sampleAt(at);
-    callback(sample);
+    if (!sample.is_left_out) callback(sample);
     at += sizeOf(sample);
     if (at == end_) at = 0;
   }
@@ -82,7 +84,7 @@ std::optional<std::uint64_t> Ring::firstStep() const {
 }
 
 void Ring::clear() {
-  first_ = next_ = count_ = used_ = 0;
+  first_ = next_ = count_ = left_out_ = used_ = 0;
   end_ = capacity_;
   older_.clear();
 }

@@ -25,6 +25,8 @@ class Ring {
     std::uint64_t step = 0;         // of the run, when it came
     std::uint64_t lost_before = 0;  // samples of its writer that should have come between the one before and this
     std::size_t latched = 0;        // how many of its writer's samples are kept when they have grown old
+    const dds::TopicFacts* facts = nullptr;  // of a topic of Baton's
+    bool is_left_out = false;                // came in a pause: kept only for what begins later
     std::span<const std::byte> payload;
   };
 
@@ -33,7 +35,7 @@ class Ring {
   /// What is older than `steps` before this sample goes, and more when there is no room. A sample larger than the whole
   /// ring is not kept; returns false then.
   bool push(const Sample& sample);
-  /// All samples that are not older than the ring, oldest first: log times never decrease.
+  /// All samples that are not older than the ring and not left out, oldest first: log times never decrease.
   void forEach(const std::function<void(const Sample&)>& callback) const;
   /// Those that are older and kept. Their bytes lie next to them, not in `payload`.
   [[nodiscard]] const LatchedSamples<Sample>& older() const { return older_; }
@@ -41,7 +43,7 @@ class Ring {
 
   /// When the first one of those came that are not older than the ring; nothing when there is none.
   [[nodiscard]] std::optional<std::uint64_t> firstStep() const;
-  [[nodiscard]] std::size_t samples() const { return count_ + older_.size(); }
+  [[nodiscard]] std::size_t samples() const { return count_ - left_out_ + older_.size(); }
   [[nodiscard]] std::size_t bytes() const { return used_ + older_.bytes(); }
 
  private:
@@ -58,6 +60,7 @@ class Ring {
   std::size_t next_ = 0;
   std::size_t end_ = 0;
   std::size_t count_ = 0;
+  std::size_t left_out_ = 0;  // of the count
   std::size_t used_ = 0;
   LatchedSamples<Sample> older_;
 };

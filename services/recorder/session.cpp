@@ -113,13 +113,15 @@ Stream& RecordingSession::streamOf(std::uint32_t topic, const dds::Guid& writer)
   stream.received = &ledger_.streamOf({facts.topic, writer});
   stream.type = facts.type;
   stream.metadata = std::move(facts.metadata);
+  stream.facts = batonTopic(facts.topic, stream.metadata);
   stream.role = roleOf(facts.topic);
   stream.credit = credit_.placeOf(facts.topic);
   stream.is_recorded = facts.is_recorded;
   stream.is_manifest = facts.topic == dds::topics::kServiceManifest.name;
   stream.is_booked = facts.is_recorded || stream.is_manifest || facts.topic == dds::topics::kServiceStatus.name;
   stream.is_status = dds::isStatusTopic(facts.topic);
-  stream.latched = facts.lasts ? latchedDepth(facts.topic, stream.metadata) : 0;
+  const bool is_kept = facts.lasts || announcesReset(stream.facts);
+  stream.latched = is_kept ? latchedDepth(facts.topic, stream.metadata) : 0;
   stream.lasts = facts.lasts;
   stream.found_ns = facts.found_ns;
   if (!facts.is_recorded) ledger_.leaveOut(facts.topic);
@@ -128,8 +130,10 @@ Stream& RecordingSession::streamOf(std::uint32_t topic, const dds::Guid& writer)
 
 void RecordingSession::keep(const Stream& stream, const SampleQueue::Entry& entry, std::span<const std::byte> payload,
                             std::uint64_t lost_before) {
-  if (holes_.isOpen() && !stream.is_manifest) return holes_.leaveOut();
+  const bool is_in_hole = holes_.isOpen() && !stream.is_manifest;
+  if (is_in_hole) holes_.leaveOut();
   if (ring_) {
+    if (is_in_hole && stream.latched == 0) return;
     ring_->push({.stream = stream.index,
                  .sequence = entry.sequence,
                  .log_time_ns = entry.log_time_ns,
@@ -137,9 +141,20 @@ void RecordingSession::keep(const Stream& stream, const SampleQueue::Entry& entr
                  .step = credit_.elapsedSteps(),
                  .lost_before = lost_before,
                  .latched = stream.latched,
+                 .facts = stream.facts,
+                 .is_left_out = is_in_hole,
                  .payload = payload});
     return;
   }
+  if (!is_in_hole) write(stream, entry, payload, lost_before);
+  // For the files that begin later.
+  latched_.keep(stream.index, "", stream.latched,
+                {.stream = &stream, .sequence = entry.sequence, .source_timestamp_ns = entry.source_timestamp_ns},
+                payload, stream.facts);
+}
+
+void RecordingSession::write(const Stream& stream, const SampleQueue::Entry& entry, std::span<const std::byte> payload,
+                             std::uint64_t lost_before) {
   if (room_.isLimited()) makeRoom();
   try {
     if (recording_) {
@@ -152,10 +167,6 @@ void RecordingSession::keep(const Stream& stream, const SampleQueue::Entry& entr
   } catch (const std::exception& error) {
     fail(error.what());
   }
-  // For the files that begin later.
-  latched_.keep(stream.index, "", stream.latched,
-                {.stream = &stream, .sequence = entry.sequence, .source_timestamp_ns = entry.source_timestamp_ns},
-                payload);
 }
 
 void RecordingSession::learn(const Stream& stream, std::span<const std::byte> payload) {

@@ -45,6 +45,8 @@ class RecordingSession {
   [[nodiscard]] Stream& streamOf(std::uint32_t topic, const dds::Guid& writer);
   void keep(const Stream& stream, const SampleQueue::Entry& entry, std::span<const std::byte> payload,
             std::uint64_t lost_before);
+  void write(const Stream& stream, const SampleQueue::Entry& entry, std::span<const std::byte> payload,
+             std::uint64_t lost_before);
   void learn(const Stream& stream, std::span<const std::byte> payload);
   // what is asked
   [[nodiscard]] std::vector<msg::RecordRequest> takeRequests();

@@ -10,6 +10,10 @@
 #include "mcap/records.hpp"
 #include "runtime/ledger.hpp"
 
+namespace baton::dds {
+struct TopicFacts;
+}
+
 namespace baton {
 
 struct Stream {
@@ -19,7 +23,8 @@ struct Stream {
   std::size_t index = 0;               // in the order they were found
   Ledger::Stream* received = nullptr;  // with topic and writer
   std::string type;
-  mcap::StringMap metadata;  // of its channel
+  const dds::TopicFacts* facts = nullptr;  // of a topic of Baton's
+  mcap::StringMap metadata;                // of its channel
   Role role = Role::kOther;
   std::optional<std::size_t> credit;  // its place, when the plant waits for its steps
   bool is_recorded = true;            // not left out on purpose

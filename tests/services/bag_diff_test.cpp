@@ -146,6 +146,24 @@ TEST_F(BagDiff, ARunThatWasResetIsComparedFromItsLastResetOn) {
   EXPECT_EQ(other.streams.at({"joint_command", "force"}).only_a, 1U);
 }
 
+TEST_F(BagDiff, AResetThatWasCalledOffIsNone) {
+  const auto called_off = [](SmallRecording& out) {
+    commands({0, 1})(out);
+    msg::Rewind rewind;
+    for (const std::uint32_t take : {1U, 2U}) {  // each attempt has a number
+      rewind.take(take);
+      rewind.phase(msg::REWIND_PREPARE);
+      out.add(dds::topics::kRewind, "plant", rewind);
+      rewind.phase(take == 1 ? msg::REWIND_CANCEL : msg::REWIND_COMMIT);
+      out.add(dds::topics::kRewind, "plant", rewind);
+    }
+    commands({0, 1, 2})(out);
+  };
+  const RecordingDiff found = diff(called_off, commands({0, 1, 2}));
+  EXPECT_TRUE(found.isSame());
+  EXPECT_EQ(found.resets_before, (std::array<std::uint32_t, 2>{1, 0}));
+}
+
 TEST_F(BagDiff, TheTakesBeforeAResetAreComparedWhenAskedFor) {
   DiffRequest all;
   all.all_takes = true;

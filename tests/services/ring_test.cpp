@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "dds/codec.hpp"
+#include "dds/topics.hpp"
 #include "support/allocation_guard.hpp"
 
 namespace baton {
@@ -113,6 +115,59 @@ TEST(Ring, EventsLastAndOfAStatusTheLatestOfEachWriter) {
   fed.push(2);               // 6
   for (std::uint64_t step = 10; step < 13; ++step) fed.push(step);
   EXPECT_EQ(fed.sequences(), (std::vector<std::uint64_t>{1, 3, 4, 5, 7, 8, 9}));
+}
+
+TEST(Ring, WhatWasLeftOutLastsAndIsNotInTheRing) {
+  Fed fed(2, kPlenty);
+  const auto pushInPause = [&](std::uint64_t step) {
+    const std::vector<std::byte> payload = payloadOf(++fed.sequence, 10);
+    fed.ring.push({.stream = 1,
+                   .sequence = fed.sequence,
+                   .log_time_ns = static_cast<std::int64_t>(fed.sequence),
+                   .step = step,
+                   .latched = 1,
+                   .is_left_out = true,
+                   .payload = payload});
+  };
+  fed.push(0, 1, 10, 1);  // 1
+  fed.push(1);            // 2
+  pushInPause(1);         // 3
+  fed.push(2);            // 4
+  EXPECT_EQ(fed.sequences(), (std::vector<std::uint64_t>{1, 2, 4}));
+  for (std::uint64_t step = 10; step < 12; ++step) fed.push(step);  // 5, 6
+  EXPECT_EQ(fed.sequences(), (std::vector<std::uint64_t>{3, 5, 6})) << "how things stand since the pause";
+}
+
+TEST(Ring, AResetEndsWhatWasDecidedBeforeIt) {
+  Ring ring(1, kPlenty);
+  std::vector<std::byte> buffer(10'000);
+  std::uint64_t sequence = 0;
+  const auto push = [&](std::size_t stream, const auto& topic, const auto& message) {
+    ring.push({.stream = stream,
+               .sequence = ++sequence,
+               .log_time_ns = static_cast<std::int64_t>(sequence),
+               .step = sequence,
+               .latched = kAll,
+               .facts = dds::topics::called(topic.name),
+               .payload = dds::encode(message, std::span(buffer))});
+  };
+  msg::Decision decision;
+  msg::Rewind rewind;
+  push(1, dds::topics::kDecision, decision);         // 1
+  push(2, dds::topics::kSwapPlan, msg::SwapPlan());  // 2
+  push(3, dds::topics::kEvent, msg::Event());        // 3
+  rewind.take(1);
+  push(4, dds::topics::kRewind, rewind);  // 4: only prepared
+  decision.take(1);
+  push(1, dds::topics::kDecision, decision);  // 5: from another writer, and so before the word of its take
+  rewind.phase(msg::REWIND_COMMIT);
+  push(4, dds::topics::kRewind, rewind);             // 6
+  push(2, dds::topics::kSwapPlan, msg::SwapPlan());  // 7
+  push(3, dds::topics::kEvent, msg::Event());        // 8
+  push(3, dds::topics::kEvent, msg::Event());        // 9
+  std::vector<std::uint64_t> older;
+  ring.older().forEach([&](const auto& sample) { older.push_back(sample.head.sequence); });
+  EXPECT_EQ(older, (std::vector<std::uint64_t>{3, 5, 6, 7}));
 }
 
 TEST(Ring, EventsThatNeverEndGiveWayToo) {

@@ -114,7 +114,7 @@ class Differ {
     };
     for (std::size_t side = 0; side < 2; ++side) {
       const Take take = request.all_takes ? Take{} : lastTake(sides_[side].reader);
-      diff_.resets_before[side] = take.number;
+      diff_.resets_before[side] = take.resets;
       openStreams(side, isCompared, take.begin_ns);
     }
     if (streams_.empty()) throw UsageError("expected topics to compare, found none; --topics chooses them");

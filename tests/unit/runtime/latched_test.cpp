@@ -23,7 +23,12 @@ mcap::ByteView bytesOf(std::string_view text) { return std::as_bytes(std::span(t
 TEST(LatchedDepth, IsWhatTheWriterKeeps) {
   EXPECT_EQ(latchedDepth("service_status", kLatched), 1U) << "Baton's profiles";
   EXPECT_EQ(latchedDepth("event", kLatched), 1024U);
-  EXPECT_EQ(latchedDepth("swap_request", kLatched), 32U);
+  EXPECT_EQ(latchedDepth("swap_request", kLatched), 0U) << "whoever has asked has left";
+  EXPECT_EQ(latchedDepth("sim_request", kLatched), 0U);
+  EXPECT_EQ(latchedDepth("launch_request", kLatched), 32U) << "what was launched, nothing else says";
+  const mcap::StringMap reset{{"type", "baton::msg::Rewind"}, {"qos", kVolatile.at("qos")}};
+  EXPECT_EQ(latchedDepth("rewind", reset), 1U) << "of which take it is";
+  EXPECT_EQ(latchedDepth("rewind", kVolatile), 0U) << "of another type";
   EXPECT_EQ(latchedDepth("plant_state", {}), 0U);
   EXPECT_EQ(latchedDepth("event", kVolatile), 0U) << "a foreign topic of that name";
   EXPECT_EQ(latchedDepth("map", kLatched), 1U) << "no depth is recorded: the last one";
@@ -84,6 +89,21 @@ TEST(LatchedSamples, WhereMemoryRunsOutTheOldestGoAndTheLatestOfEachStay) {
   kept.keep(1, "", 1);                                  // 1: the only word of its writer
   for (int i = 0; i < 20; ++i) kept.keep(2, "", 1000);  // 2 to 21
   EXPECT_EQ(kept.held(), (std::vector<int>{1, 18, 19, 20, 21}));
+}
+
+TEST(LatchedSamples, OfThoseThatMayGoTheOldestGoesFirst) {
+  Kept kept(40);
+  kept.keep(1, "", 2);  // 1
+  kept.keep(2, "", 2);  // 2
+  kept.keep(2, "", 2);  // 3: 2 may go
+  kept.keep(1, "", 2);  // 4: 1 may go too
+  kept.keep(3, "", 2);  // 5
+  EXPECT_EQ(kept.held(), (std::vector<int>{2, 3, 4, 5}));
+  kept.keep(2, "", 2);  // 6: 2 goes by its depth, 3 may go
+  kept.keep(4, "", 2);  // 7
+  EXPECT_EQ(kept.held(), (std::vector<int>{4, 5, 6, 7}));
+  kept.keep(5, "", 2);  // 8: nothing may go
+  EXPECT_EQ(kept.held(), (std::vector<int>{4, 5, 6, 7, 8}));
 }
 
 class LatchedBefore : public testing::Test {
