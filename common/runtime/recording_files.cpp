@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "mcap/lookup.hpp"
+#include "mcap/readable_metadata.hpp"
 
 namespace baton {
 namespace {
@@ -40,10 +41,10 @@ std::optional<unsigned> indexOf(const mcap::StringMap& part) {
 
 Said askFile(const fs::path& path) {
   // Damage is for whoever reads the messages.
-  const mcap::Reader reader(path, {.on_damage = [](const mcap::Damage&) {}});
+  const mcap::Reader reader(path, {.trusts_summary = true, .on_damage = [](const mcap::Damage&) {}});
   Said said{.path = path, .run = {}, .profile = reader.info().header.profile, .first = {}, .index = {}};
   bool is_copy = false;
-  for (const mcap::Metadata& one : reader.metadata()) {
+  for (const mcap::Metadata& one : mcap::readableMetadata(reader)) {
     if (one.name == "baton.run") said.run = one.values;
     if (one.name == "baton.cut") is_copy = true;
     if (one.name == "baton.part") {

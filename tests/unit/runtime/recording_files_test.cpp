@@ -6,9 +6,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 
 #include "base/error.hpp"
+#include "mcap/joined_reader.hpp"
 #include "mcap/writer.hpp"
 
 namespace baton {
@@ -128,6 +130,25 @@ TEST_F(RecordingFiles, NothingIsReadTwice) {
   const std::string one = write("one.mcap", {.run = "r", .begin_ns = 0, .end_ns = 2'000'000'000});
   const std::string two = write("two.mcap", {.run = "r", .begin_ns = 1'500'000'000, .end_ns = 3'000'000'000});
   EXPECT_NE(refusal({.given = {two, one}}).find("which overlap by 0.500 s"), std::string::npos);
+}
+
+TEST_F(RecordingFiles, ADamagedMetadataRecordKeepsNothingFromBeingRead) {
+  const std::string first = write("a.mcap", {.run = "r", .begin_ns = 10, .end_ns = 20});
+  const std::string second = write("b.mcap", {.run = "r", .begin_ns = 30, .end_ns = 40, .is_cut_out = true});
+  std::fstream file(second, std::ios::binary | std::ios::in | std::ios::out);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string name = "baton.cut";
+  const std::size_t record = bytes.find(name);
+  ASSERT_NE(record, std::string::npos);
+  file.clear();
+  file.seekp(static_cast<std::streamoff>(record + name.size()));
+  file.write("\xFF\xFF\xFF\x7F", 4);  // the length of its values
+  file.close();
+  ASSERT_THROW((void)mcap::Reader(second, {.on_damage = [](const auto&) {}}).metadata(), mcap::FormatError);
+  const FoundRecording found = findRecording({.given = {second, first}});
+  EXPECT_EQ(names(found), (Texts{"a.mcap", "b.mcap"}));
+  const mcap::JoinedReader joined(found.files, [](const auto&, const auto&) {});
+  EXPECT_EQ(joined.statistics().message_count, 4U);
 }
 
 TEST_F(RecordingFiles, WhatHasNoNumbersComesByItsTimes) {
