@@ -66,6 +66,7 @@ void copyExtras(const mcap::JoinedReader& reader, mcap::Copier& copy) {
 }
 
 struct Copied {
+  std::uint64_t of = 0;        // that were recorded, not repeated
   std::uint64_t kept = 0;      // of what was chosen
   std::uint64_t repeated = 0;  // from before its beginning
 };
@@ -89,6 +90,7 @@ Copied copyMessages(const CutRequest& request, const mcap::JoinedReader& reader,
   const std::uint64_t end = std::min(filter.end_time_ns, reader.statistics().end_time_ns);
   const auto span = static_cast<double>(end > begin ? end - begin : 1);
   mcap::Repeated repeated = reader.repeated();  // of a recording that itself begins in the middle
+  copied.of = reader.statistics().message_count - repeated.count();
   reader.forEachMessage(filter, [&](const mcap::MessageView& message) {
     if (!range.takes(message)) return;
     if (repeated.takes(message)) {
@@ -125,23 +127,22 @@ ExitCode cut(CutRequest& request) {
   mcap::Copier copy(request.out.file, options);
   copyExtras(reader, copy);
   const Copied copied = copyMessages(request, reader, in, copy);
-  const std::uint64_t of = reader.statistics().message_count;
   if (copied.kept == 0) {
     throw UsageError(fmt::format("expected messages in these topics and times, found none: {} has {} in {:.6f} s", in,
-                                 of, mcap::durationOf(reader)));
+                                 copied.of, mcap::durationOf(reader)));
   }
-  copy.metadata("baton.cut", cutMetadata(request.what, in, copied.kept, of));
+  copy.metadata("baton.cut", cutMetadata(request.what, in, copied.kept, copied.of));
   if (copied.repeated > 0) copy.metadata(mcap::kRepeatedRecord, mcap::repeatedRecord(copied.repeated));
   copy.finish();
   if (request.json) {
     std::puts(toText({{"file", in},
                       {"out", request.out.file},
                       {"messages", copied.kept},
-                      {"left_out", of - copied.kept},
+                      {"left_out", copied.of - copied.kept},
                       {"latched", copied.repeated}})
                   .c_str());
   } else {
-    fmt::print("cut         {}: {} of {} messages of {}\n", request.out.file, copied.kept, of, in);
+    fmt::print("cut         {}: {} of {} messages of {}\n", request.out.file, copied.kept, copied.of, in);
     if (copied.repeated > 0) {
       fmt::print("            and in front {} from before, as a late joiner would have been given them\n",
                  copied.repeated);

@@ -21,6 +21,7 @@
 #include "base/text.hpp"
 #include "dds/types.hpp"
 #include "mcap/lookup.hpp"
+#include "mcap/repeated.hpp"
 #include "runtime/json.hpp"
 #include "runtime/recording_files.hpp"
 
@@ -92,8 +93,10 @@ std::string reasonFor(const BagSummary& bag) {
   return bag.run.empty() ? "finished; it was not recorded by Baton and has no certificate" : "it has no certificate";
 }
 
-/// Reads all messages, so that every CRC is checked and every gap is found.
-void readMessages(const mcap::Source& reader, BagSummary& bag) {
+/// Reads all messages, so that every CRC is checked and every gap is found. What the recording repeats from before its
+/// beginning is counted, and says nothing of clocks and gaps.
+void readMessages(const mcap::JoinedReader& reader, BagSummary& bag) {
+  mcap::Repeated repeated = reader.repeated();
   std::map<mcap::ChannelId, SequenceGaps*> counted;  // null: of one whose numbers count something else
   std::map<std::pair<TopicSummary*, std::string>, SequenceGaps> writers;
   reader.forEachMessage({.order = mcap::MessageFilter::Order::kFile}, [&](const mcap::MessageView& message) {
@@ -109,13 +112,14 @@ void readMessages(const mcap::Source& reader, BagSummary& bag) {
       // for all channels.
       if (dds::guidCalled(guid)) gaps->second = &writers[{&topic, guid}];
     }
-    if (gaps->second != nullptr) gaps->second->add(message.sequence);
+    const bool is_repeated = repeated.takes(message);
+    if (gaps->second != nullptr && !is_repeated) gaps->second->add(message.sequence);
     topic.first_ns = topic.messages == 0 ? message.log_time_ns : std::min(topic.first_ns, message.log_time_ns);
     topic.last_ns = std::max(topic.last_ns, message.log_time_ns);
     ++topic.messages;
     bag.start_ns = bag.messages == 0 ? message.log_time_ns : std::min(bag.start_ns, message.log_time_ns);
     bag.end_ns = std::max(bag.end_ns, message.log_time_ns);
-    bag.log_times.add(channel.id, message.log_time_ns);
+    if (!is_repeated) bag.log_times.add(channel.id, message.log_time_ns);
     ++bag.messages;
     bag.plain_bytes += mcap::kMessageHeadBytes + message.data.size();
   });
