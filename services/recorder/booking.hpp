@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "runtime/ledger.hpp"
@@ -9,6 +10,10 @@
 #include "stream.hpp"
 
 namespace baton {
+
+/// What a writer keeps for late joiners comes within this time of finding it. Both times are of the recorder's clock:
+/// the clock of the writer may be wrong, and a replay sends the source times of its recording.
+inline constexpr std::int64_t kHistoryPatience_ns = 2'000'000'000;
 
 /// Returns whether it is to be kept: it has data and has not come before.
 [[nodiscard]] inline bool book(Ledger& ledger, const Stream& stream, const SampleQueue::Entry& entry,
@@ -19,7 +24,7 @@ namespace baton {
     return false;
   }
   // What a writer keeps for late joiners may have holes, the latest of each key for one. Nothing in them was lost.
-  const bool is_history = stream.lasts && entry.source_timestamp_ns < stream.found_ns;
+  const bool is_history = stream.lasts && entry.log_time_ns - stream.found_ns < kHistoryPatience_ns;
   if (is_history && entry.sequence > 0) {
     ledger.passOver(account, account.second.last_sequence + 1, entry.sequence - 1);
   }

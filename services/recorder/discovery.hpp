@@ -63,7 +63,7 @@ class TopicReaders {
     std::string type;
     bool is_recorded = true;
     bool lasts = false;
-    std::int64_t found_ns = 0;  // since the epoch, by this machine's clock
+    std::int64_t found_ns = 0;  // since the epoch, by the participant's clock
     mcap::StringMap metadata;   // of its channel
   };
   /// Who is behind a sample; any thread.

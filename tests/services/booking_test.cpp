@@ -14,19 +14,23 @@ class Booking : public testing::Test {
  protected:
   Booking() {
     stream_.received = &ledger_.streamOf({"topic", dds::Guid{}});
-    stream_.found_ns = 1000;
+    stream_.found_ns = kFound_ns;
   }
-  bool comes(std::uint64_t sequence, std::int64_t sent_ns, bool has_data = true) {
+  /// @param after_ns  its writer was found.
+  bool comes(std::uint64_t sequence, std::int64_t after_ns, bool has_data = true) {
     SampleQueue::Entry entry;
     entry.sequence = sequence;
-    entry.source_timestamp_ns = sent_ns;
+    entry.log_time_ns = kFound_ns + after_ns;
+    entry.source_timestamp_ns = entry.log_time_ns + writers_clock_ns_;
     entry.has_data = has_data;
     return book(ledger_, stream_, entry, std::array<std::byte, 4>{});
   }
   [[nodiscard]] std::uint64_t missing() const { return stream_.received->second.missing; }
 
+  static constexpr std::int64_t kFound_ns = 1'700'000'000'000'000'000, kHour_ns = 3'600'000'000'000;
   Ledger ledger_{{}};
   Stream stream_;
+  std::int64_t writers_clock_ns_ = 0;  // ahead of ours
 };
 
 TEST_F(Booking, HolesInWhatAWriterKeptForLateJoinersAreNoLoss) {
@@ -34,8 +38,23 @@ TEST_F(Booking, HolesInWhatAWriterKeptForLateJoinersAreNoLoss) {
   EXPECT_TRUE(comes(1, 10));
   EXPECT_TRUE(comes(6, 60));
   EXPECT_EQ(missing(), 0U);
-  EXPECT_TRUE(comes(8, 1100)) << "sent since it was found";
+  EXPECT_TRUE(comes(8, kHistoryPatience_ns)) << "sent since it was found";
   EXPECT_EQ(missing(), 1U);
+}
+
+TEST_F(Booking, TheClockOfAWriterNeitherHidesALossNorMakesOne) {
+  for (const std::int64_t clock_ns : {-kHour_ns, kHour_ns, -kFound_ns}) {
+    SCOPED_TRACE(clock_ns);
+    ledger_ = Ledger{{}};
+    stream_.received = &ledger_.streamOf({"topic", dds::Guid{}});
+    stream_.lasts = true;
+    writers_clock_ns_ = clock_ns;
+    EXPECT_TRUE(comes(1, 10));
+    EXPECT_TRUE(comes(6, 60));
+    EXPECT_EQ(missing(), 0U) << "kept for late joiners";
+    EXPECT_TRUE(comes(9, kHour_ns / 2));
+    EXPECT_EQ(missing(), 2U) << "sent since it was found";
+  }
 }
 
 TEST_F(Booking, OfAWriterThatKeepsNothingEveryHoleIsALoss) {
