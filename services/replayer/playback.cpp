@@ -54,10 +54,12 @@ void Playback::begin(std::uint64_t first_log_time_ns, std::int64_t now_ns) {
 Playback::Due Playback::due(std::uint64_t log_time_ns) {
   next_ns_ = log_time_ns;
   if (!is_playing_) return {.is_held = steps_left_ == 0, .deadline_ns = std::nullopt};
-  if (previous_ns_ && log_time_ns - *previous_ns_ > plan_.longest_gap_ns) {
-    const std::int64_t left_ns = pacer_.deadline(*previous_ns_).value_or(0);
-    previous_ns_ = head_ns_ = log_time_ns - plan_.longest_gap_ns;
-    pacer_.anchor(head_ns_, left_ns);
+  const std::uint64_t from_ns = previous_ns_.value_or(head_ns_);  // after a seek: the place sought
+  if (log_time_ns - from_ns > plan_.longest_gap_ns) {
+    const std::int64_t due_ns = pacer_.deadline(from_ns).value_or(0);
+    head_ns_ = log_time_ns - plan_.longest_gap_ns;
+    if (previous_ns_) previous_ns_ = head_ns_;
+    pacer_.anchor(head_ns_, due_ns);
   }
   return {.is_held = false, .deadline_ns = pacer_.deadline(log_time_ns)};
 }

@@ -182,6 +182,17 @@ TEST_F(ReplayControl, AGapIsSkippedWhenAsked) {
   EXPECT_TRUE(listener.hears(range(0, 20)));
 }
 
+TEST_F(ReplayControl, AGapIsSkippedAfterASeekIntoItToo) {
+  Listener listener(bench_, "listener");
+  start({writeNumbers(bench_, 20, 3'600'000 * kMs), "--paused", "--wait-for-readers", "listener", "--skip-gaps",
+         "0.001"});
+  ASSERT_TRUE(stands("paused"));
+  player({"seek", "5400"});  // half an hour before the third
+  player({"resume"});
+  EXPECT_EQ(bench_.wait(pid_), 0);
+  EXPECT_TRUE(listener.hears(range(2, 20)));
+}
+
 TEST_F(ReplayControl, ATopicThatCannotBeReplayedIsLeftOutAndTheOthersAreReplayed) {
   const std::string file = (bench_.folder() / "bad.mcap").string();
   mcap::Writer writer(file, {});

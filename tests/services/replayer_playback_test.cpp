@@ -65,6 +65,30 @@ TEST(Playback, AGapThatIsCutShortKeepsWhatWasLeftOfItOverAPause) {
   EXPECT_EQ(playback.due(at(3'600'000)).deadline_ns, kNow + 5400 * kMs);
 }
 
+TEST(Playback, AGapIsWaitedForNoLongerThanAskedAfterASeekToo) {
+  Playback playback = begun({.longest_gap_ns = 500'000'000});
+  playback.seek(at(1000), kNow);
+  EXPECT_EQ(playback.due(at(1400)).deadline_ns, kNow + 400 * kMs) << "a shorter one is kept";
+  playback.seek(at(1000), kNow + 100 * kMs);
+  for (int ask = 0; ask < 3; ++ask) EXPECT_EQ(playback.due(at(3'601'000)).deadline_ns, kNow + 600 * kMs);
+  EXPECT_EQ(playback.position(kNow + 200 * kMs), at(3'600'600)) << "from the gap's end";
+  playback.pause(kNow + 200 * kMs);
+  EXPECT_TRUE(playback.due(at(3'601'000)).is_held);
+  playback.resume(kNow + 5000 * kMs);
+  EXPECT_EQ(playback.due(at(3'601'000)).deadline_ns, kNow + 5400 * kMs) << "what was left of it";
+  playback.sent("a", at(3'601'000), kNow + 5400 * kMs);
+  EXPECT_EQ(playback.playedTime(), 0U) << "the gap was skipped to";
+}
+
+TEST(Playback, AGapIsWaitedForNoLongerThanAskedAfterASeekInAPause) {
+  Playback playback = begun({.longest_gap_ns = 500'000'000});
+  playback.pause(kNow);
+  playback.seek(at(1000), kNow + 100 * kMs);
+  EXPECT_TRUE(playback.due(at(3'601'000)).is_held);
+  playback.resume(kNow + 1000 * kMs);
+  EXPECT_EQ(playback.due(at(3'601'000)).deadline_ns, kNow + 1500 * kMs);
+}
+
 TEST(Playback, CanBeginPaused) {
   Playback playback({.starts_paused = true});
   playback.begin(at(0), kNow);
