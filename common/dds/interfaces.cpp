@@ -5,12 +5,22 @@
 #include <net/if.h>
 #include <netinet/in.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 
 #include "base/error.hpp"
 
 namespace baton::dds {
+namespace {
+
+std::string textOf(const std::vector<Interface>& there) {
+  std::string list;
+  for (const Interface& one : there) list += (list.empty() ? "" : ", ") + one.name + " (" + one.address + ")";
+  return list.empty() ? "none" : list;
+}
+
+}  // namespace
 
 std::vector<Interface> interfaces() {
   ifaddrs* first = nullptr;
@@ -31,16 +41,30 @@ std::vector<std::string> addressesOf(const std::vector<std::string>& wanted, con
   std::vector<std::string> addresses;
   for (const std::string& one : wanted) {
     if (one == "all") return {};
+    if (one == kLoopback) {
+      addresses.push_back(one);
+      continue;
+    }
     const std::size_t before = addresses.size();
     for (const Interface& known : there) {
       if (one == known.name || one == known.address) addresses.push_back(known.address);
     }
     if (addresses.size() > before) continue;
-    std::string list;
-    for (const Interface& known : there) list += (list.empty() ? "" : ", ") + known.name + " (" + known.address + ")";
-    throw UsageError("--interface: expected all or one of " + list + ", found " + one);
+    expectUp({}, there);
+    throw UsageError("--interface: expected all or one of " + textOf(there) + ", found " + one);
   }
   return addresses;
+}
+
+void expectUp(const std::vector<std::string>& addresses, const std::vector<Interface>& there) {
+  const auto isWanted = [&](const Interface& one) {
+    return addresses.empty() || std::ranges::count(addresses, one.address) > 0;
+  };
+  if (std::ranges::any_of(there, isWanted)) return;
+  std::string wanted;
+  for (const std::string& one : addresses) wanted += (wanted.empty() ? " with the address " : " or ") + one;
+  throw UnavailableError("DDS has no network: expected an interface" + wanted + " that is up, found " + textOf(there) +
+                         "; bring it up (the loopback: ip link set lo up) and retry");
 }
 
 }  // namespace baton::dds

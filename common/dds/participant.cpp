@@ -180,6 +180,7 @@ Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_
   if (options.domain < 0 || options.domain > kMaxDomain) {
     throw UsageError("DDS domain: expected 0 to 232, found " + std::to_string(options.domain));
   }
+  expectUp(options.addresses, interfaces());
   [[maybe_unused]] static const bool is_first = (ignoreForeignSettings(), true);
   self = {.cell = options.cell, .run = options.run, .service = options.service, .started_ns = clock.now()};
   participant = fastdds::createParticipant(options.domain, participantQos(options, self), this,

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dds/interfaces.hpp"
 #include "dds/run_key.hpp"
 #include "dds/types.hpp"
 #include "dds/wall_clock.hpp"
@@ -17,11 +18,11 @@ namespace baton::dds {
 struct ParticipantOptions {
   int domain = 0;         // 0 to 232
   std::string partition;  // "cell/run": endpoints in other partitions are never matched; may be a pattern for observers
-  std::vector<std::string> other_partitions{};      // writers are heard in these as well; "": where no partition is set
-  std::vector<std::string> also_read{};             // readers match writers in these as well, likewise; may be patterns
-  std::vector<std::string> addresses{"127.0.0.1"};  // IPv4, of the interfaces it uses; empty: all of this machine
-  int lease_s = 3600;                               // how long the others take it for alive after its last word
-  std::string cell;                                 // the cell this process belongs to, empty for observers of any
+  std::vector<std::string> other_partitions{};    // writers are heard in these as well; "": where no partition is set
+  std::vector<std::string> also_read{};           // readers match writers in these as well, likewise; may be patterns
+  std::vector<std::string> addresses{kLoopback};  // IPv4, of the interfaces it uses; empty: all of this machine
+  int lease_s = 3600;                             // how long the others take it for alive after its last word
+  std::string cell;                               // the cell this process belongs to, empty for observers of any
   std::string run;      // the run within the cell; what is left over from another run is told apart by this
   std::string service;  // name of the service, unique in the run
   Transport transport = Transport::kUdp;
@@ -64,7 +65,7 @@ using WriterCallback = std::function<void(const DiscoveredWriter&)>;
 class Participant {
  public:
   /// @param on_peer  called for every Baton process that joins, strangers too.
-  /// Throws UsageError for a domain outside 0 to 232 and UnavailableError when DDS refuses.
+  /// Throws UsageError for a domain outside 0 to 232 and UnavailableError when no interface is up or DDS refuses.
   explicit Participant(const ParticipantOptions& options, PeerCallback on_peer = {});
   ~Participant();
   Participant(const Participant&) = delete;

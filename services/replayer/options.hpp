@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dds/interfaces.hpp"
 #include "dds/types.hpp"
 #include "runtime/recording_files.hpp"
 #include "runtime/recording_range.hpp"
@@ -21,10 +22,10 @@ struct ReplayOptions {
   std::string run;                       // never empty once parsed
   std::optional<std::string> partition;  // heard there as well; empty: where listeners set none
   dds::Transport transport = dds::Transport::kUdp;
-  std::vector<std::string> interfaces{"lo"};  // names or IPv4 addresses; "all": of this machine
-  std::vector<std::string> topics;            // recorded names; all when empty
-  std::map<std::string, std::string> remap;   // recorded name to the name published
-  double rate = 1.0;                          // recorded seconds per second; 0 for as fast as readers take it
+  std::vector<std::string> interfaces{dds::kLoopback};  // names or IPv4 addresses; "all": of this machine
+  std::vector<std::string> topics;                      // recorded names; all when empty
+  std::map<std::string, std::string> remap;             // recorded name to the name published
+  double rate = 1.0;                                    // recorded seconds per second; 0 for as fast as readers take it
   RangeWish range;
   bool without_latched = false;         // does not begin with what a late joiner would have been given
   std::optional<double> longest_gap_s;  // in which nothing was logged; what is longer is cut to that

@@ -20,6 +20,7 @@ TEST(ReplayOptions, NeedAFileAlone) {
   EXPECT_EQ(options.file, "run.mcap");
   EXPECT_EQ(options.cell, "replay");
   EXPECT_EQ(options.rate, 1.0);
+  EXPECT_EQ(options.interfaces, std::vector<std::string>{"127.0.0.1"}) << "whatever the loopback is called";
   EXPECT_TRUE(options.topics.empty());
   EXPECT_FALSE(!options.range.isAll());
 }

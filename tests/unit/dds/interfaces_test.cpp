@@ -38,6 +38,34 @@ TEST(Interfaces, WhatIsNotThereIsRefusedWithWhatIs) {
   }
 }
 
+TEST(Interfaces, TheLoopbackIsItsAddressAloneWhateverElseItHasAndIsNotLookedUp) {
+  std::vector<Interface> there = kMachine;
+  there.insert(there.begin(), {"lo", "127.0.0.53"});
+  EXPECT_EQ(addressesOf({kLoopback}, there), Strings{"127.0.0.1"});
+  EXPECT_EQ(addressesOf({kLoopback}, {}), Strings{"127.0.0.1"});
+}
+
+TEST(Interfaces, AMachineWithoutAnyIsUnavailableWhateverIsAskedFor) {
+  EXPECT_NO_THROW(expectUp({}, kMachine));
+  EXPECT_NO_THROW(expectUp({"192.0.2.99", "192.0.2.2"}, kMachine)) << "one is enough";
+  EXPECT_THROW(expectUp({}, {}), UnavailableError);
+  EXPECT_THROW((void)addressesOf({"eth0"}, {}), UnavailableError);
+  try {
+    expectUp({kLoopback, "192.0.2.99"}, {{"eth0", "192.0.2.2"}});
+    FAIL();
+  } catch (const UnavailableError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("expected an interface with the address 127.0.0.1 or 192.0.2.99"), std::string::npos) << text;
+    EXPECT_NE(text.find("found eth0 (192.0.2.2)"), std::string::npos) << text;
+  }
+}
+
+TEST(Interfaces, AParticipantWithoutANetworkIsRefused) {
+  ParticipantOptions nowhere = memberOptions("nowhere", "cell");
+  nowhere.addresses = {"192.0.2.99"};  // of documentation: no machine has it
+  EXPECT_THROW(Participant{nowhere}, UnavailableError);
+}
+
 TEST(Interfaces, ThisMachineHasTheLoopback) {
   const std::vector<Interface> there = interfaces();
   EXPECT_TRUE(std::ranges::any_of(there, [](const Interface& one) { return one.address == "127.0.0.1"; }));
