@@ -5,7 +5,9 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <thread>
+#include <utility>
 
 #include "base/text.hpp"
 #include "dds/interfaces.hpp"
@@ -20,23 +22,22 @@ namespace {
 constexpr std::size_t kMostQueued = std::size_t{256} << 20;
 constexpr std::size_t kWakeAfter = 1024;
 
-const char* nameOf(int signal) { return signal == SIGINT ? "Ctrl-C" : signal == SIGTERM ? "SIGTERM" : "SIGHUP"; }
-
-bool isIgnored(int signal) {
-  struct sigaction action {};
-  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+std::string nameOf(int signal) {
+  if (signal == SIGINT) return "Ctrl-C";
+  return signal == SIGQUIT ? "Ctrl-\\" : std::string("SIG") + sigabbrev_np(signal);
 }
 
 }  // namespace
 
-TrafficRecorder::TrafficRecorder(const TrafficOptions& options)
-    : options_(options),
+TrafficRecorder::TrafficRecorder(TrafficOptions options)
+    : options_(std::move(options)),
       participant_(participantOptions()),
       queue_(kMostQueued, kWakeAfter, participant_.clock()),
       topics_(participant_, executor_, rules(),
               [this](std::uint32_t topic, const dds::RawSample& sample) { (void)queue_.push(topic, sample); }),
-      session_(options, queue_, topics_) {
-  if (!isIgnored(SIGHUP)) signals_.add(SIGHUP);
+      session_(options_, claimRecording("FILE", options_.out, options_.recording.isSplit(), options_.overwrite), queue_,
+               topics_) {
+  for (const int number : endingSignals()) signals_.add(number);
 }
 
 /// A guest in other people's domain: when it is killed, their reliable writers soon stop waiting for it. Not as soon as
@@ -93,7 +94,7 @@ void TrafficRecorder::awaitSignal() {
     if (std::exchange(is_ending_, true)) {
       std::fputs("the file is being finished; kill -9 would leave it without its index\n", stderr);
     }
-    session_.end(TrafficEnd::kSignal, std::string("ended by ") + nameOf(signal));
+    session_.end(TrafficEnd::kSignal, "ended by " + nameOf(signal));
     awaitSignal();
   });
 }
@@ -110,7 +111,6 @@ ExitCode recordTraffic(int argc, const char* const* argv) {
   const HeldSignals held;
   TrafficOptions options;
   if (!parseTrafficOptions(argc, argv, options)) return ExitCode::kOk;
-  options.out = claimRecording("FILE", options.out, options.recording.isSplit(), options.overwrite).string();
   setUpLog("record");
   TrafficRecorder recorder(options);
   held.release();

@@ -20,13 +20,14 @@ namespace baton {
 
 class TrafficRecorder {
  public:
-  /// Joins the domain and creates the file. `options` outlives it. Throws UsageError and UnavailableError.
-  explicit TrafficRecorder(const TrafficOptions& options);
+  /// Joins the domain, then takes the place of the file, `options.out`: what is there stays when anything else of the
+  /// options is wrong. Throws UsageError and UnavailableError.
+  explicit TrafficRecorder(TrafficOptions options);
   TrafficRecorder(const TrafficRecorder&) = delete;
   TrafficRecorder& operator=(const TrafficRecorder&) = delete;
 
-  /// Until Ctrl-C, SIGTERM, SIGHUP (unless it was ignored, as under nohup), a limit or a failure. Every further signal
-  /// is answered by a line: the file is being finished.
+  /// Until one of endingSignals(), a limit or a failure. Every further signal is answered by a line: the file is being
+  /// finished.
   TrafficResult run();
 
  private:
@@ -35,10 +36,10 @@ class TrafficRecorder {
   void awaitSignal();
   void awaitDuration();
 
-  const TrafficOptions& options_;
+  const TrafficOptions options_;
   boost::asio::io_context executor_{1};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{executor_.get_executor()};
-  boost::asio::signal_set signals_{executor_, SIGINT, SIGTERM};
+  boost::asio::signal_set signals_{executor_};
   boost::asio::steady_timer duration_{executor_};
   bool is_ending_ = false;
   dds::Participant participant_;

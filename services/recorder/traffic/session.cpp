@@ -40,13 +40,14 @@ Origin originOfTraffic(const TrafficOptions& options) {
 
 }  // namespace
 
-TrafficSession::TrafficSession(const TrafficOptions& options, SampleQueue& queue, const TopicReaders& topics)
+TrafficSession::TrafficSession(const TrafficOptions& options, const std::filesystem::path& file, SampleQueue& queue,
+                               const TopicReaders& topics)
     : options_(options),
       queue_(queue),
       topics_(topics),
       origin_(originOfTraffic(options)),
       room_(options.recording, kLimits),
-      recording_(std::make_unique<Recording>(options.out, options.recording, origin_, 0, 0)) {
+      recording_(std::make_unique<Recording>(file, options.recording, origin_, 0, 0, &latched_)) {
   room_.measure(recording_->path());
 }
 
@@ -115,6 +116,9 @@ Stream& TrafficSession::streamOf(std::uint32_t topic, const dds::Guid& writer) {
   stream.received = &ledger_.streamOf({facts.topic, writer});
   stream.type = facts.type;
   stream.metadata = std::move(facts.metadata);
+  stream.facts = batonTopic(facts.topic, stream.metadata);
+  const bool is_kept = options_.recording.isSplit() && (facts.lasts || announcesReset(stream.facts));
+  stream.latched = is_kept ? latchedDepth(facts.topic, stream.metadata) : 0;
   stream.lasts = facts.lasts;
   stream.found_ns = facts.found_ns;
   line_.clear();
@@ -137,6 +141,10 @@ void TrafficSession::keep(const Stream& stream, const SampleQueue::Entry& entry,
                              .source_timestamp_ns = entry.source_timestamp_ns,
                              .lost_before = lost_before,
                              .payload = payload});
+  // For the parts that begin later.
+  latched_.keep(stream.index, "", stream.latched,
+                {.stream = &stream, .sequence = entry.sequence, .source_timestamp_ns = entry.source_timestamp_ns},
+                payload, stream.facts);
   if (options_.max_messages == 0 || recording_->messages() < options_.max_messages) return;
   end(TrafficEnd::kReached, fmt::format("--max-messages, {}, is reached", options_.max_messages));
   finish();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -23,8 +24,10 @@ namespace baton {
 
 class TrafficSession {
  public:
-  /// Creates the file. The arguments outlive it. Throws UnavailableError when the file is there or cannot be created.
-  TrafficSession(const TrafficOptions& options, SampleQueue& queue, const TopicReaders& topics);
+  /// Creates the file. The other arguments outlive it. Throws UnavailableError when the file is there or cannot be
+  /// created.
+  TrafficSession(const TrafficOptions& options, const std::filesystem::path& file, SampleQueue& queue,
+                 const TopicReaders& topics);
 
   /// Until end(), a limit or a failure.
   TrafficResult run();
@@ -52,6 +55,7 @@ class TrafficSession {
   const std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
   Ledger ledger_{{}};
   std::map<std::pair<std::uint32_t, dds::Guid>, Stream> streams_;
+  Latched latched_{kMostLatchedBytes};  // for the parts to come
   Room room_;
   std::unique_ptr<Recording> recording_;
   TrafficResult result_;
