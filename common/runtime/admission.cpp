@@ -43,9 +43,9 @@ bool mayWrite(dds::WrittenBy who, std::string_view service) {
   return false;
 }
 
-bool yieldsTo(const dds::Peer& self, const dds::Peer& other, bool is_member, bool has_begun) {
+bool yieldsTo(const dds::Peer& self, const dds::Peer& other, bool is_believed, bool has_begun) {
   const bool is_namesake = other.cell == self.cell && other.service == self.service;
-  if (!is_member || !is_namesake || !isElder(other, self)) return false;
+  if (!is_believed || !is_namesake || !isElder(other, self)) return false;
   return other.run == self.run || (self.service == kPlantName && !has_begun);
 }
 

@@ -23,10 +23,10 @@ namespace baton {
 [[nodiscard]] std::string badInputText(std::string_view topic, std::uint64_t step, std::string_view why);
 
 /// Whether a process leaves its place to another: the younger of two copies of a service of one run; and a plant that
-/// has not begun to that of an elder run in the cell. How old the other one is, is its own word, so it counts only with
-/// the run's key, where there is one: then the cell's lock alone keeps other runs out.
-/// @param is_member  whether the other one has our run's key; true where we have none.
-[[nodiscard]] bool yieldsTo(const dds::Peer& self, const dds::Peer& other, bool is_member, bool has_begun);
+/// has not begun to that of an elder run in the cell. How old the other one is, is its own word, so it counts only when
+/// the other one is believed.
+/// @param is_believed  it has our run's key, or that of another run of this user's; or our run has none.
+[[nodiscard]] bool yieldsTo(const dds::Peer& self, const dds::Peer& other, bool is_believed, bool has_begun);
 
 class Admission {
  public:

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/service_options.hpp"
@@ -136,6 +137,15 @@ dds::RunKey readKey(const std::string& file) {
   const auto key = dds::RunKey::parse(std::string_view(text).substr(0, text.find('\n')));
   if (!key) throw UnavailableError(file + ": expected the key of a run, 64 hexadecimal digits");
   return *key;
+}
+
+bool isOfThisUser(const dds::Peer& peer) {
+  if (!isFileName(peer.run, "")) return false;  // it comes from outside
+  try {
+    return readKey((stateFolder() / "runs" / peer.run / "key").string()).isMarked(peer.prefix);
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 dds::ParticipantOptions operatorOf(const RunInfo& info) {

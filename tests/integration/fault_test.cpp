@@ -204,9 +204,12 @@ TEST(Fault, ALeftOverPlantKeepsItsCell) {
   Bench bench;
   // A plant of an earlier run that waits for services that are gone; run ids sort by time.
   const std::string scenario = bench.write("short.yaml", shortContact());
+  const std::string run = "20000101-000000-0000";
+  std::filesystem::create_directories(bench.folder() / "runs" / run);
+  const std::string key = bench.write("runs/" + run + "/key", dds::RunKey::fresh().text() + "\n");
   const int old = bench.start(
       "baton-plant",
-      {"--scenario", scenario, "--run", "20000101-000000-0000", "--domain", std::to_string(bench.domain())}, "old.log");
+      {"--scenario", scenario, "--run", run, "--key", key, "--domain", std::to_string(bench.domain())}, "old.log");
   {
     dds::Participant onlooker({.domain = bench.domain(),
                                .partition = "lab/onlooker",
@@ -220,7 +223,7 @@ TEST(Fault, ALeftOverPlantKeepsItsCell) {
   }
   const Finished refused = bench.baton({"run", scenario});
   EXPECT_EQ(refused.exit_code, 3) << refused.out << refused.err;
-  EXPECT_NE((refused.out + refused.err).find("20000101-000000-0000"), std::string::npos) << refused.out << refused.err;
+  EXPECT_NE((refused.out + refused.err).find(run), std::string::npos) << refused.out << refused.err;
   // Another cell is free, and so is this one once the process is gone.
   EXPECT_EQ(bench.baton({"run", scenario, "--cell", "other"}).exit_code, 0);
   kill(old, SIGTERM);
