@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "runtime/cell.hpp"
 #include "runtime/signals.hpp"
 
 namespace baton {
@@ -105,7 +106,8 @@ bool Service::isRival(const dds::Peer& peer) const {
 
 void Service::giveWayToElders() {
   for (const dds::Peer& peer : participant_.peers()) {
-    if (!yieldsTo(participant_.self(), peer, participant_.isMember(peer.prefix), ready_)) continue;
+    const bool is_believed = participant_.isMember(peer.prefix) || isOfThisUser(peer);
+    if (!yieldsTo(participant_.self(), peer, is_believed, ready_)) continue;
     return giveWay(peer.run == options_.run ? "run " + peer.run + " has its " + peer.service + " already"
                                             : "cell " + peer.cell + " has a plant of run " + peer.run +
                                                   " already: end that run or choose another --cell");
@@ -259,7 +261,7 @@ std::string lossText(const dds::TopicFacts& topic, std::uint64_t lost, std::uint
   return text.empty() ? text : std::string(topic.name) + ": " + text;
 }
 
-/// Zero for a request that is handled at once; nothing for one that is left out.
+/// Zero for a request that is due at once; nothing for one that is left out.
 std::optional<std::chrono::nanoseconds> Service::pauseBefore(const dds::Guid& asker) {
   const std::int64_t now_ns = std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
   const std::optional<std::int64_t> due_ns = pace_.admit(dds::prefixOf(asker), now_ns);
@@ -273,13 +275,15 @@ std::optional<std::chrono::nanoseconds> Service::pauseBefore(const dds::Guid& as
   return std::nullopt;
 }
 
-void Service::afterPause(std::chrono::nanoseconds pause, std::function<void()> action) {
+/// In the order in which the asker's requests came, though its timers may run out in another one.
+void Service::handleLater(const dds::Guid& asker, std::chrono::nanoseconds pause, std::function<void()> action) {
+  line_.add(dds::prefixOf(asker), std::move(action));
   const auto timer = std::make_shared<asio::steady_timer>(executor_);
-  asio::post(executor_, [this, timer, pause, action = std::move(action)] {
+  asio::post(executor_, [this, timer, pause, prefix = dds::prefixOf(asker)] {
     timer->expires_after(pause);
-    timer->async_wait([this, timer, action](const boost::system::error_code& error) {
+    timer->async_wait([this, timer, prefix](const boost::system::error_code& error) {
       const std::lock_guard lock(mutex_);
-      if (!error && !is_closed_) action();
+      if (!error && !is_closed_) line_.next(prefix)();
     });
   });
 }

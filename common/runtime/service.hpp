@@ -30,6 +30,7 @@
 #include "runtime/barrier.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/service_options.hpp"
+#include "time/request_line.hpp"
 #include "time/request_pace.hpp"
 
 namespace baton {
@@ -138,7 +139,7 @@ class Service {
   void peerJoined(const dds::Peer& peer);
   void tellLosses();
   [[nodiscard]] std::optional<std::chrono::nanoseconds> pauseBefore(const dds::Guid& asker);
-  void afterPause(std::chrono::nanoseconds pause, std::function<void()> action);
+  void handleLater(const dds::Guid& asker, std::chrono::nanoseconds pause, std::function<void()> action);
   void strikeWhenReached(std::uint64_t step);
   void checkBarrier();
   void publishManifest();
@@ -188,6 +189,7 @@ class Service {
   };
   Refusal refusal_;           // for the status
   RequestPace pace_;          // guarded by mutex_
+  RequestLine line_;          // likewise: those that the pace lets wait
   bool told_flood_ = false;   // likewise
   bool has_refused_ = false;  // guarded by mutex_
   std::uint32_t take_ = 0;    // guarded by mutex_
@@ -242,12 +244,14 @@ void Service::input(const dds::Topic<T>& topic, const std::vector<std::string>& 
           const T& message, const dds::RawSample& sample) {
         const std::lock_guard lock(mutex_);
         if (is_closed_) return;
-        const auto pause = is_paced ? pauseBefore(sample.writer) : std::chrono::nanoseconds(0);
+        if (!is_paced) return handler(message, sample);
+        const auto pause = pauseBefore(sample.writer);
         if (!pause) return;
-        if (pause->count() == 0) return handler(message, sample);
+        const bool is_due = pause->count() == 0 && !line_.isWaiting(dds::prefixOf(sample.writer));
+        if (is_due) return handler(message, sample);
         dds::RawSample later = sample;
         later.payload = {};  // it is DDS's
-        afterPause(*pause, [handler, message, later] { handler(message, later); });
+        handleLater(sample.writer, *pause, [handler, message, later] { handler(message, later); });
       },
       [this] { matchesChanged(); }, admission_.filter(topic));
   require(
