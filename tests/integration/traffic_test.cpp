@@ -427,7 +427,7 @@ TEST(Traffic, ARunThatIsRecordedFromOutsideIsTheSameRun) {
     const Json run = bench.batonJson({"run", scenario, "--out", out, "--json"});
     EXPECT_EQ(run.at("exit_code"), 0) << run;
     EXPECT_EQ(run.at("recording").at("complete"), true);
-    return run.at("hash");
+    return run.at("chain_hash");
   };
   const Json alone = hashOf("alone.mcap");
   Recorder recorder(bench, {"--interface", "lo"});
