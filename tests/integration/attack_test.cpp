@@ -96,6 +96,14 @@ std::string hashLeftAlone(const std::string& scenario) {
   return bench.batonJson({"run", bench.write("alone.yaml", scenario), "--json"}).at("chain_hash");
 }
 
+/// Its robot's path is relative to where it lies.
+std::string demoScenario() {
+  std::string text = readFile(deployFolder() / "scenarios/demo.yaml");
+  const std::string relative = "../robots/";
+  text.replace(text.find(relative), relative.size(), (deployFolder() / "robots/").string());
+  return text;
+}
+
 struct Mode {
   const char* name;
   std::string scenario;
@@ -175,7 +183,7 @@ TEST(AttackedAtRandom, TheRunIsAsIfLeftAlone) {
   const char* seed_text = std::getenv("BATON_ATTACK_SEED");
   const auto seed = seed_text == nullptr ? std::random_device()() : static_cast<unsigned>(std::stoul(seed_text));
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(minutes == nullptr ? 0 : std::stoi(minutes));
-  const std::string scenario = minutes == nullptr ? shortContact() : readFile(deployFolder() / "scenarios/demo.yaml");
+  const std::string scenario = minutes == nullptr ? shortContact() : demoScenario();
   const std::string alone = hashLeftAlone(scenario);
   std::mt19937 random(seed);
   const auto choose = [&random] {
