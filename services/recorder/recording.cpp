@@ -115,6 +115,7 @@ void Recording::repeat(std::int64_t log_time_ns) {
   repeated_ = {};
   if (latched_ == nullptr || latched_->size() == 0) return;
   file_->addMetadata(mcap::kRepeatedRecord, mcap::repeatedRecord(latched_->size()));
+  file_->flush();  // before them: a file that is cut after their chunk still says what they are
   latched_->forEach([&](const Latched::Sample& sample) {
     Written& written = writtenOf(*sample.head.stream);
     openChannel(written, *sample.head.stream);
