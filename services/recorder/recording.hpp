@@ -86,11 +86,7 @@ class Recording {
   [[nodiscard]] unsigned part() const { return index_; }
   [[nodiscard]] std::uint64_t messages() const { return messages_; }
   /// Of these, those that no end of this process can take away any more.
-  [[nodiscard]] std::uint64_t writtenMessages() const {
-    if (!file_) return messages_;
-    const mcap::WriterStatistics statistics = file_->statistics();
-    return messages_ - (statistics.messages - statistics.written_messages);
-  }
+  [[nodiscard]] std::uint64_t writtenMessages() const;
   [[nodiscard]] std::uint64_t bytes() const { return closed_bytes_ + (file_ ? file_->statistics().file_bytes : 0); }
 
  private:
