@@ -46,7 +46,7 @@ std::string FileList::string() const {
   return first().string() + " and " + std::to_string(more) + " more file" + (more > 1 ? "s" : "");
 }
 
-JoinedReader::JoinedReader(const FileList& files, DamageSink on_damage) {
+JoinedReader::JoinedReader(const FileList& files, const DamageSink& on_damage) {
   parts_.reserve(files.paths().size());
   for (const std::filesystem::path& path : files.paths()) {
     ReaderOptions options;

@@ -46,7 +46,7 @@ class JoinedReader : public Source {
   using DamageSink = std::function<void(const std::filesystem::path&, const Damage&)>;
 
   /// Throws what Reader's constructor throws, and UsageError when the files have more channels than one can.
-  explicit JoinedReader(const FileList& files, DamageSink on_damage = {});
+  explicit JoinedReader(const FileList& files, const DamageSink& on_damage = {});
   JoinedReader(const JoinedReader&) = delete;
   JoinedReader& operator=(const JoinedReader&) = delete;
 

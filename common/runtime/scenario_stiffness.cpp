@@ -50,7 +50,8 @@ SubstepNeed shorter(const SubstepNeed& a, const SubstepNeed& b) { return b.longe
 std::string adviceFor(const SubstepNeed& need, std::int64_t step_ns) {
   for (std::int64_t part = 1; step_ns / part >= kMinStep_ns; ++part) {
     if (step_ns % part != 0) continue;
-    const double step_s = static_cast<double>(step_ns / part) / 1e9;
+    const std::int64_t shorter_ns = step_ns / part;
+    const double step_s = static_cast<double>(shorter_ns) / 1e9;
     const double substeps = need.substeps(step_s);
     if (substeps > kMaxSubsteps) continue;
     const std::string text = fmt::format("give substeps: {:.0f}", substeps);

@@ -30,7 +30,7 @@ TopicReaders::~TopicReaders() {
 
 void TopicReaders::watch() {
   participant_.watchWriters([this](const dds::DiscoveredWriter& writer) {
-    if (dds::prefixOf(writer.guid) == participant_.self().prefix || !rules_.isWanted(writer)) return;
+    if (dds::prefixOf(writer.guid) == participant_.self().prefix || !rules_.is_wanted(writer)) return;
     noteWriter(writer);
     boost::asio::post(executor_, [this, writer] { writerFound(writer); });
   });
@@ -88,12 +88,12 @@ void TopicReaders::writerFound(const dds::DiscoveredWriter& writer) {
           }
         },
         [this] {
-          if (rules_.onMatch) rules_.onMatch();
+          if (rules_.on_match) rules_.on_match();
         },
-        rules_.filterFor(writer.topic));
+        rules_.filter_for(writer.topic));
   } catch (const Error& error) {
     refuse("a writer cannot be recorded: " + std::string(error.what()));
-    return rules_.onUnreadable(error.what());
+    return rules_.on_unreadable(error.what());
   }
   topics_.push_back(std::move(topic));
 }

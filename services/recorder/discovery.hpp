@@ -26,15 +26,15 @@ struct ReadingRules {
   TopicSelection selection{};
   std::set<std::string> awaited{};  // topics that are read though they are not recorded
   /// Whether a writer is of concern. On a DDS thread.
-  std::function<bool(const dds::DiscoveredWriter&)> isWanted;
+  std::function<bool(const dds::DiscoveredWriter&)> is_wanted;
   /// Whose samples count on a topic; an empty one: everybody's.
-  std::function<dds::WriterFilter(const std::string& topic)> filterFor = [](const std::string&) {
+  std::function<dds::WriterFilter(const std::string& topic)> filter_for = [](const std::string&) {
     return dds::WriterFilter{};
   };
   /// Readers are matched with others than before. On a DDS thread.
-  std::function<void()> onMatch{};
+  std::function<void()> on_match{};
   /// A writer cannot be read, in a sentence. On the executor.
-  std::function<void(const std::string& text)> onUnreadable;
+  std::function<void(const std::string& text)> on_unreadable;
   /// Another participant like the first: one has room for one type under the name of a topic. Empty: there is none, and
   /// writers of a second type are unreadable.
   std::function<std::unique_ptr<dds::Participant>()> another{};

@@ -54,16 +54,16 @@ ReadingRules rulesOfRun(Service& service) {
        {dds::topics::kServiceStatus.name, dds::topics::kParameterStatus.name, dds::topics::kParameterReply.name}) {
     rules.awaited.insert(name);
   }
-  rules.isWanted = [&service,
-                    partition = service.options().participant().partition](const dds::DiscoveredWriter& writer) {
+  rules.is_wanted = [&service,
+                     partition = service.options().participant().partition](const dds::DiscoveredWriter& writer) {
     return isOfCell(writer, partition) && isAdmitted(service, writer);
   };
-  rules.filterFor = [&service](const std::string& topic) {
+  rules.filter_for = [&service](const std::string& topic) {
     const dds::TopicFacts* facts = dds::topics::called(topic);
     return facts == nullptr ? dds::WriterFilter{} : service.admission().filter(*facts);
   };
-  rules.onMatch = [&service] { service.matchesChanged(); };
-  rules.onUnreadable = [&service](const std::string& text) { service.event(msg::SEVERITY_ERROR, "record", text); };
+  rules.on_match = [&service] { service.matchesChanged(); };
+  rules.on_unreadable = [&service](const std::string& text) { service.event(msg::SEVERITY_ERROR, "record", text); };
   return rules;
 }
 

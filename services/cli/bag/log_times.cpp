@@ -15,9 +15,9 @@ constexpr std::uint64_t kMostAtOnce = 100;       // messages of a channel with o
 
 }  // namespace
 
-void LogTimes::add(mcap::ChannelId id, std::uint64_t log_time_ns) {
+void LogTimes::add(mcap::ChannelId channel_id, std::uint64_t log_time_ns) {
   ++messages_;
-  const auto slot = static_cast<std::size_t>(id);
+  const auto slot = static_cast<std::size_t>(channel_id);
   if (slot >= channels_.size()) channels_.resize(slot + 1);
   Channel& channel = channels_[slot];
   const std::uint64_t back_ns = channel.last_ns > log_time_ns ? channel.last_ns - log_time_ns : 0;

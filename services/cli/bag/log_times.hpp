@@ -17,7 +17,7 @@ namespace baton {
 class LogTimes {
  public:
   /// In the file's order, which need not be that of time. Memory is bounded.
-  void add(mcap::ChannelId channel, std::uint64_t log_time_ns);
+  void add(mcap::ChannelId channel_id, std::uint64_t log_time_ns);
   /// What follows is of another part of the recording, with channels of its own.
   void nextFile() { channels_.clear(); }
   /// A sentence for each kind of jump; none for a clock that ran on.

@@ -61,14 +61,14 @@ dds::ParticipantOptions TrafficRecorder::participantOptions() const {
 ReadingRules TrafficRecorder::rules() {
   ReadingRules rules;
   rules.selection = options_.selection;
-  rules.isWanted = [this, read = readPartitions(options_.partitions)](const dds::DiscoveredWriter& writer) {
+  rules.is_wanted = [this, read = readPartitions(options_.partitions)](const dds::DiscoveredWriter& writer) {
     if (!isInPartitions(writer.partitions, read)) return false;
     if (!hasControlCharacters(writer.topic) && !hasControlCharacters(writer.type)) return true;
     topics_.refuse("a writer of " + dds::toString(writer.guid) +
                    " is not recorded: control characters in the name of its topic or type");
     return false;
   };
-  rules.onUnreadable = [](const std::string& text) { spdlog::error("{}", text); };
+  rules.on_unreadable = [](const std::string& text) { spdlog::error("{}", text); };
   rules.another = [this] { return std::make_unique<dds::Participant>(participantOptions()); };
   return rules;
 }

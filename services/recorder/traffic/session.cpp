@@ -64,7 +64,7 @@ bool TrafficSession::isOver() {
   return end_.has_value();
 }
 
-std::uint64_t TrafficSession::elapsed_ms() const {
+std::uint64_t TrafficSession::elapsedMilliseconds() const {
   return static_cast<std::uint64_t>(
       std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - begun_).count());
 }
@@ -130,7 +130,7 @@ void TrafficSession::keep(const Stream& stream, const SampleQueue::Entry& entry,
                           std::uint64_t lost_before) {
   if (!recording_) return;
   if (room_.isLimited()) {
-    const Room::Outcome outcome = room_.makeFor(*recording_, elapsed_ms(), 0);
+    const Room::Outcome outcome = room_.makeFor(*recording_, elapsedMilliseconds(), 0);
     if (!outcome.end.empty()) {
       end(outcome.is_disk_low ? TrafficEnd::kTooEarly : TrafficEnd::kReached, outcome.end);
       return finish();
@@ -166,7 +166,7 @@ void TrafficSession::showProgress() {
   std::set<std::string> topics;
   for (const auto& [key, stream] : streams_) topics.insert(stream.topic());
   line_.show(fmt::format("{}: {:.0f} s, {} topics, {} messages, {:.2f} MB, {} lost (Ctrl-C ends it)",
-                         recording_->path().filename().string(), static_cast<double>(elapsed_ms()) * 1e-3,
+                         recording_->path().filename().string(), static_cast<double>(elapsedMilliseconds()) * 1e-3,
                          topics.size(), recording_->messages(), static_cast<double>(recording_->bytes()) * 1e-6,
                          ledger_.missing()));
 }
@@ -223,7 +223,7 @@ void TrafficSession::count(const Recording& recording) {
   for (unsigned part = 0; part <= recording.part(); ++part) {
     result_.files.push_back(partOf(recording.path(), part).string());
   }
-  result_.seconds = static_cast<double>(elapsed_ms()) * 1e-3;
+  result_.seconds = static_cast<double>(elapsedMilliseconds()) * 1e-3;
   result_.messages = recording.writtenMessages();
   result_.bytes = recording.bytes();
   std::map<std::pair<std::string, std::string>, TrafficResult::Topic> topics;

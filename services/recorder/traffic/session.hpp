@@ -42,7 +42,7 @@ class TrafficSession {
   void tend();
   void showProgress();
   [[nodiscard]] bool isOver();
-  [[nodiscard]] std::uint64_t elapsed_ms() const;
+  [[nodiscard]] std::uint64_t elapsedMilliseconds() const;
   void fail(const std::string& what);
   void finish();
   void noteWhatCannotBeRecorded(const Recording& recording);
