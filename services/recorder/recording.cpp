@@ -170,7 +170,7 @@ void Recording::splitWhenFull(std::uint64_t elapsed, std::uint64_t step) {
 std::uint64_t Recording::writtenMessages() const {
   if (!file_) return messages_;
   const mcap::WriterStatistics statistics = file_->statistics();
-  // The latest; what the part repeats came before all of its own.
+  // The latest ones are unwritten: a part begins with what it repeats.
   const std::uint64_t own = messages_ - parts_.back().messages_before;
   return messages_ - std::min(own, statistics.messages - statistics.written_messages);
 }

@@ -26,7 +26,7 @@ bool isAdmitted(Service& service, const dds::DiscoveredWriter& writer) {
   return facts == nullptr || service.admission().admits(*facts, writer.guid);
 }
 
-/// Whose samples are awaited from the first one on, by topic; nobody is for a topic that the run does not wait for.
+/// Of each topic, the services whose samples count from the first one on; none for a topic that the run does not await.
 std::vector<std::string> awaitedFrom(const dds::TopicFacts& topic, const Scenario& scenario) {
   switch (topic.recorded_from) {
     case dds::RecordedFrom::kNobody: break;

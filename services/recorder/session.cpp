@@ -108,22 +108,14 @@ Stream& RecordingSession::streamOf(std::uint32_t topic, const dds::Guid& writer)
   const auto [found, is_new] = streams_.try_emplace({topic, writer});
   Stream& stream = found->second;
   if (!is_new) return stream;
-  TopicReaders::Writer facts = topics_.of(topic, writer);
-  stream.index = streams_.size() - 1;
-  stream.received = &ledger_.streamOf({facts.topic, writer});
-  stream.type = facts.type;
-  stream.metadata = std::move(facts.metadata);
-  stream.facts = batonTopic(facts.topic, stream.metadata);
+  const TopicReaders::Writer facts = topics_.of(topic, writer);
+  introduce(stream, streams_.size() - 1, facts, writer, true, ledger_);
   stream.role = roleOf(facts.topic);
   stream.credit = credit_.placeOf(facts.topic);
   stream.is_recorded = facts.is_recorded;
   stream.is_manifest = facts.topic == dds::topics::kServiceManifest.name;
   stream.is_booked = facts.is_recorded || stream.is_manifest || facts.topic == dds::topics::kServiceStatus.name;
   stream.is_status = dds::isStatusTopic(facts.topic);
-  const bool is_kept = facts.lasts || announcesReset(stream.facts);
-  stream.latched = is_kept ? latchedDepth(facts.topic, stream.metadata) : 0;
-  stream.lasts = facts.lasts;
-  stream.found_ns = facts.found_ns;
   if (!facts.is_recorded) ledger_.leaveOut(facts.topic);
   return stream;
 }

@@ -111,16 +111,8 @@ Stream& TrafficSession::streamOf(std::uint32_t topic, const dds::Guid& writer) {
   const auto [found, is_new] = streams_.try_emplace({topic, writer});
   Stream& stream = found->second;
   if (!is_new) return stream;
-  TopicReaders::Writer facts = topics_.of(topic, writer);
-  stream.index = streams_.size() - 1;
-  stream.received = &ledger_.streamOf({facts.topic, writer});
-  stream.type = facts.type;
-  stream.metadata = std::move(facts.metadata);
-  stream.facts = batonTopic(facts.topic, stream.metadata);
-  const bool is_kept = options_.recording.isSplit() && (facts.lasts || announcesReset(stream.facts));
-  stream.latched = is_kept ? latchedDepth(facts.topic, stream.metadata) : 0;
-  stream.lasts = facts.lasts;
-  stream.found_ns = facts.found_ns;
+  const TopicReaders::Writer facts = topics_.of(topic, writer);
+  introduce(stream, streams_.size() - 1, facts, writer, options_.recording.isSplit(), ledger_);
   line_.clear();
   spdlog::info("recording topic={} type={} writer={}", facts.topic, facts.type, dds::toString(writer));
   return stream;
