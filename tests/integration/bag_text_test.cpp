@@ -112,7 +112,8 @@ TEST(BagCat, PrintsWhatIsLeftOfADamagedOrCutFileAndSaysSo) {
   EXPECT_EQ(cat.exit_code, 1);
   ASSERT_EQ(linesOf(cat.out).size(), 3U);
   EXPECT_EQ(nlohmann::json::parse(linesOf(cat.out)[1]).at("error"), "b: expected 4 bytes, found 0");
-  EXPECT_NE(cat.err.find("line 1: expected a final or an appendable type, found a mutable one"), std::string::npos) << cat.err;
+  EXPECT_NE(cat.err.find("line 1: expected a final or an appendable type, found a mutable one"), std::string::npos)
+      << cat.err;
 
   std::filesystem::resize_file(file, std::filesystem::file_size(file) - 20);
   const Finished cut = bench.baton({"bag", "cat", file, "--topics", "u"});

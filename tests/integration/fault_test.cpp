@@ -208,8 +208,8 @@ TEST(Fault, ALeftOverPlantKeepsItsCell) {
   std::filesystem::create_directories(bench.folder() / "runs" / run);
   const std::string key = bench.write("runs/" + run + "/key", dds::RunKey::fresh().text() + "\n");
   const int old = bench.start(
-      "baton-plant",
-      {"--scenario", scenario, "--run", run, "--key", key, "--domain", std::to_string(bench.domain())}, "old.log");
+      "baton-plant", {"--scenario", scenario, "--run", run, "--key", key, "--domain", std::to_string(bench.domain())},
+      "old.log");
   {
     dds::Participant onlooker({.domain = bench.domain(),
                                .partition = "lab/onlooker",
