@@ -13,6 +13,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "support/own_domain.hpp"
+
 namespace baton::test {
 namespace fs = std::filesystem;
 namespace {
@@ -74,7 +76,7 @@ Finished runProgram(const fs::path& program, const std::vector<std::string>& arg
   return {exit_code, contentsOf(out), contentsOf(err)};
 }
 
-Bench::Bench() : domain_(1 + getpid() % 99) {
+Bench::Bench() : domain_(ownDomain()) {
   std::string pattern = (fs::temp_directory_path() / "baton-test-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
   folder_ = pattern;
@@ -130,7 +132,7 @@ std::string Bench::write(const std::string& name, const std::string& text) const
 }
 
 bool eventually(const std::function<bool()>& condition) {
-  const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(4);
   while (!condition()) {
     if (std::chrono::steady_clock::now() > give_up) return false;
     usleep(10'000);

@@ -27,7 +27,7 @@ class Bench {
   Bench& operator=(const Bench&) = delete;
 
   [[nodiscard]] std::filesystem::path folder() const { return folder_; }
-  /// Different for tests that run at the same time, and below the ports the kernel hands out to others.
+  /// That of this process alone.
   [[nodiscard]] int domain() const { return domain_; }
   /// Runs the `baton` command line to its end; --domain is added for commands that take one.
   [[nodiscard]] Finished baton(std::vector<std::string> arguments) const;
@@ -54,7 +54,7 @@ class Bench {
 [[nodiscard]] Finished runProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                                   const std::filesystem::path& home);
 
-/// Waits until `condition` holds, by looking at it again and again; false when it does not within two minutes, which
+/// Waits until `condition` holds, by looking at it again and again; false when it does not within four minutes, which
 /// fails a test that is broken and decides nothing about one that is not.
 [[nodiscard]] bool eventually(const std::function<bool()>& condition);
 

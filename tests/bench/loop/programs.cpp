@@ -11,11 +11,12 @@
 #include "base/error.hpp"
 #include "runtime/log.hpp"
 #include "runtime/paths.hpp"
+#include "support/own_domain.hpp"
 
 namespace baton::bench {
 namespace fs = std::filesystem;
 
-Programs::Programs() : domain_(1 + getpid() % 99) {
+Programs::Programs() : domain_(test::ownDomain()) {
   std::string pattern = (fs::temp_directory_path() / "baton-bench-XXXXXX").string();
   if (mkdtemp(pattern.data()) == nullptr) throw UnavailableError("cannot make a folder like " + pattern);
   folder_ = pattern;

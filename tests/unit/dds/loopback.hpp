@@ -13,11 +13,10 @@
 #include "dds/fastdds.hpp"
 #include "dds/participant.hpp"
 #include "dds/types.hpp"
+#include "support/own_domain.hpp"
 
 namespace baton::test {
 
-/// A domain other test processes on this machine are unlikely to use; partitions keep apart those that do.
-inline int testDomain() { return 70 + static_cast<int>(getpid() % 100); }
 inline std::string testPartition(const std::string& name) { return "unit-" + std::to_string(getpid()) + "/" + name; }
 
 inline dds::ParticipantOptions memberOptions(const std::string& service, const std::string& partition) {
@@ -27,7 +26,7 @@ inline dds::ParticipantOptions memberOptions(const std::string& service, const s
     return true;
   }();
   (void)through_the_transport;
-  return {.domain = testDomain(),
+  return {.domain = ownDomain(),
           .partition = testPartition(partition),
           .cell = "unit",
           .run = std::to_string(getpid()),
