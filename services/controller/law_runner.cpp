@@ -52,7 +52,7 @@ LawRunner::LawRunner(Service& service)
   service.onRewind([this](std::uint64_t step) { return isQuiet(step); }, [this] { forget(); });
   service.every(std::chrono::milliseconds(100), [this] {
     const std::lock_guard lock(service_.mutex());
-    publishStatus();
+    if (status_pace_.isDue(status())) publishStatus();
   });
 }
 
@@ -240,7 +240,7 @@ void LawRunner::acknowledge(const msg::SwapPlan& plan, bool ready, const JointVe
   ack_out_.write(ack_);
 }
 
-void LawRunner::publishStatus() {
+msg::ControllerStatus LawRunner::status() const {
   msg::ControllerStatus status;
   status.name(config_.name);
   status.law(config_.law);
@@ -264,7 +264,13 @@ void LawRunner::publishStatus() {
   }
   if (skipped_ > 0 && !failing_)
     status.text("skipped " + std::to_string(skipped_) + " steps whose inputs did not come");
-  status_out_.write(status);
+  return status;
+}
+
+void LawRunner::publishStatus() {
+  const msg::ControllerStatus now = status();
+  status_out_.write(now);
+  status_pace_.wrote(now);
 }
 
 }  // namespace baton

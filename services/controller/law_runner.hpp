@@ -13,6 +13,7 @@
 #include "runtime/loop_output.hpp"
 #include "runtime/running_law.hpp"
 #include "runtime/service.hpp"
+#include "runtime/status_pace.hpp"
 #include "time/step_inputs.hpp"
 
 namespace baton {
@@ -39,6 +40,7 @@ class LawRunner {
   void acknowledge(const msg::SwapPlan& plan, bool ready, const JointVector& effort, const char* reason);
   [[nodiscard]] bool isQuiet(std::uint64_t step) const;
   void forget();
+  [[nodiscard]] msg::ControllerStatus status() const;
   void publishStatus();
   [[nodiscard]] bool isIncoming(const msg::SwapPlan& plan) const;
 
@@ -71,6 +73,7 @@ class LawRunner {
   LoopOutput<msg::JointCommand> shadow_out_;
   dds::Writer<msg::SwapAck>& ack_out_;
   dds::Writer<msg::ControllerStatus>& status_out_;
+  StatusPace<msg::ControllerStatus> status_pace_;
   msg::JointCommand message_;
   msg::SwapAck ack_;
 };

@@ -91,7 +91,7 @@ Plant::Plant(Service& service)
   });
   service.every(std::chrono::milliseconds(100), [this] {
     const std::lock_guard lock(service_.mutex());
-    if (!master_.isOver()) publishStatus();
+    repeatStatus();
     watchLateness();
   });
 }

@@ -20,6 +20,7 @@
 #include "runtime/checkpoint.hpp"
 #include "runtime/loop_output.hpp"
 #include "runtime/service.hpp"
+#include "runtime/status_pace.hpp"
 #include "step_timing.hpp"
 #include "time/baton_arbiter.hpp"
 #include "time/dry_runs.hpp"
@@ -106,7 +107,9 @@ class Plant {
   void measureStep(std::uint64_t step, const JointVector& tau_before, const JointVector& q_before);
   void publishReport(bool cut_short);
   // plant_outputs.cpp
+  [[nodiscard]] msg::SimStatus status() const;
   void publishStatus();
+  void repeatStatus();
   void armTimer();
   void watchLateness();
 
@@ -204,6 +207,7 @@ class Plant {
   dds::Writer<msg::PlantState>& again_out_;
   dds::Writer<msg::SimReply>& reply_out_;
   dds::Writer<msg::SimStatus>& status_out_;
+  StatusPace<msg::SimStatus> status_pace_;
   dds::Writer<msg::Rewind>& rewind_out_;
   dds::Writer<msg::TimingStatus>& timing_out_;
   dds::Writer<msg::SwapPlan>& plan_out_;

@@ -10,7 +10,7 @@ std::string Plant::namesWaitedFor() const {
   return names.empty() ? "the plant itself" : names;  // it is about to begin
 }
 
-void Plant::publishStatus() {
+msg::SimStatus Plant::status() const {
   msg::SimStatus status;
   switch (master_.phase()) {
     case SimPhase::kStarting: status.state(msg::SIM_STATE_STARTING); break;
@@ -39,9 +39,22 @@ void Plant::publishStatus() {
   status.reason(end_reason_);
   status.missed_steps(missed_);
   status.chain_hash(chain_hash_);
+  return status;
+}
+
+void Plant::publishStatus() {
   // First: whoever sees the end of the run has its timing already.
   timing_out_.write(timing_.report(master_.step(), missed_));
-  status_out_.write(status);
+  const msg::SimStatus now = status();
+  status_out_.write(now);
+  status_pace_.wrote(now);
+}
+
+void Plant::repeatStatus() {
+  if (master_.isOver()) return;
+  msg::SimStatus now = status();
+  now.elapsed_s(status_pace_.last().elapsed_s());  // it alone grows while nothing happens
+  if (status_pace_.isDue(now)) publishStatus();
 }
 
 }  // namespace baton
