@@ -7,14 +7,14 @@
 #include <iostream>
 
 #include "base/text.hpp"
+#include "dds/parting.hpp"
 #include "runtime/log.hpp"
 #include "runtime/signals.hpp"
 
 namespace baton {
 
-int runGuarded(const std::string& name, const std::function<ExitCode()>& body) {
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file at its limit is an error of a write, as on a full disk
+namespace {
+int guarded(const std::string& name, const std::function<ExitCode()>& body) {
   try {
     return static_cast<int>(body());
   } catch (const Error& error) {
@@ -28,6 +28,13 @@ int runGuarded(const std::string& name, const std::function<ExitCode()>& body) {
     std::cerr << name << ": unexpected: " << error.what() << '\n';
     return static_cast<int>(ExitCode::kFailed);
   }
+}
+}  // namespace
+
+int runGuarded(const std::string& name, const std::function<ExitCode()>& body) {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file at its limit is an error of a write, as on a full disk
+  return dds::leave(guarded(name, body));
 }
 
 int runService(int argc, char** argv, const std::string& role, const std::function<ExitCode(Service&)>& body) {

@@ -21,6 +21,7 @@
 #include <sstream>
 
 #include "cell_client.hpp"
+#include "dds/parting.hpp"
 #include "runtime/log.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/recording_parts.hpp"
@@ -87,6 +88,38 @@ pid_t launch(const fs::path& program, const std::vector<std::string>& arguments,
   return pid;
 }
 
+/// The latest words of a run.
+class Onlooker {
+ public:
+  explicit Onlooker(const RunInfo& info)
+      : participant_(operatorOf(info)),
+        admission_(participant_, false, [](const std::string&) {}),  // the run itself tells
+        sim_(participant_, dds::topics::kSimStatus, keepIn(latest_.sim), {},
+             admission_.filter(dds::topics::kSimStatus)),
+        recorder_(participant_, dds::topics::kRecorderStatus, keepIn(latest_.recorder), {},
+                  admission_.filter(dds::topics::kRecorderStatus)) {}
+  [[nodiscard]] RunProgress latest() {
+    const std::lock_guard lock(mutex_);
+    return latest_;
+  }
+
+ private:
+  template <class Word>
+  typename dds::Reader<Word>::Callback keepIn(std::optional<Word>& word) {
+    return [this, &word](const Word& message, const dds::RawSample&) {
+      const std::lock_guard lock(mutex_);
+      word = message;
+    };
+  }
+
+  std::mutex mutex_;
+  RunProgress latest_;
+  dds::Participant participant_;
+  Admission admission_;
+  dds::Reader<msg::SimStatus> sim_;
+  dds::Reader<msg::RecorderStatus> recorder_;
+};
+
 }  // namespace
 
 RunSession::~RunSession() = default;
@@ -139,31 +172,15 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
 
 std::optional<ExitCode> RunSession::follow(const std::function<void(const RunProgress&)>& progress,
                                            const std::function<bool(const msg::SimStatus&)>& until) {
-  std::mutex mutex;
-  RunProgress latest;
-  dds::Participant participant(operatorOf(info_));
-  Admission admission(participant, false, [](const std::string&) {});  // the run itself tells
-  const auto keepIn = [&mutex](auto& latest_word) {
-    return [&mutex, &latest_word](const auto& message, const dds::RawSample&) {
-      const std::lock_guard lock(mutex);
-      latest_word = message;
-    };
-  };
-  const dds::Reader<msg::SimStatus> sim(participant, dds::topics::kSimStatus, keepIn(latest.sim), {},
-                                        admission.filter(dds::topics::kSimStatus));
-  const dds::Reader<msg::RecorderStatus> recorder(participant, dds::topics::kRecorderStatus, keepIn(latest.recorder),
-                                                  {}, admission.filter(dds::topics::kRecorderStatus));
+  auto onlooker = std::make_unique<Onlooker>(info_);
   int passed_on = 0;
   for (;;) {
     int how = 0;
     const pid_t ended = waitpid(info_.supervisor_pid, &how, WNOHANG);
-    RunProgress now;
-    {
-      const std::lock_guard lock(mutex);
-      now = latest;
-    }
+    const RunProgress now = onlooker->latest();
     if (ended == info_.supervisor_pid) {
       progress(now);
+      dds::partFrom(std::move(onlooker));
       return WIFEXITED(how) ? static_cast<ExitCode>(WEXITSTATUS(how)) : ExitCode::kFailed;
     }
     if (passed_on < caught_signals) {

@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <memory>
 
+#include "dds/parting.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/log.hpp"
 #include "runtime/paths.hpp"
@@ -75,10 +77,11 @@ ExitCode supervise(int argc, char** argv) {
   options.key_file = keyFile(info);
   options.is_open = is_open;
   options.clock = info.clock;
-  Service service(options, std::move(scenario));
+  auto service = std::make_unique<Service>(options, std::move(scenario));
   held.release();
-  Supervisor supervisor(service, deployment);
-  return supervisor.run();
+  const ExitCode code = Supervisor(*service, deployment).run();
+  dds::partFrom(std::move(service));
+  return code;
 }
 
 }  // namespace baton

@@ -1,0 +1,39 @@
+/// The end of what uses DDS. A forged datagram can keep a thread of Fast DDS busy for ever, with locks that every
+/// reader and the participant need for their own end (common/README.md, "Forged RTPS"): who just destroys them hangs.
+#pragma once
+
+#include <chrono>
+#include <future>
+#include <memory>
+#include <thread>
+#include <utility>
+
+namespace baton::dds {
+
+/// How long the end of a participant and its endpoints may take. It takes milliseconds.
+inline constexpr std::chrono::seconds kPartingPatience{10};
+
+/// Something that uses DDS could not be destroyed: leave() then runs no destructors.
+void noteLeftover() noexcept;
+
+/// Destroys `owner` and returns true. When that does not end in time, leaves it as it is with the thread that tries,
+/// and returns false; the process must end by leave().
+template <class Owner>
+bool partFrom(std::unique_ptr<Owner> owner, std::chrono::milliseconds patience = kPartingPatience) {
+  std::packaged_task<void()> end([owner = std::move(owner)]() mutable { owner.reset(); });
+  const std::future<void> ended = end.get_future();
+  std::thread thread(std::move(end));
+  if (ended.wait_for(patience) == std::future_status::ready) {
+    thread.join();
+    return true;
+  }
+  thread.detach();
+  noteLeftover();
+  return false;
+}
+
+/// What main() returns. Does not return when something could not be destroyed: the end of the program would wait for
+/// it.
+[[nodiscard]] int leave(int exit_code);
+
+}  // namespace baton::dds
