@@ -7,12 +7,14 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <span>
 #include <sstream>
 #include <tuple>
 
 #include "base/error.hpp"
 #include "dds/environment.hpp"
 #include "dds/fastdds.hpp"
+#include "dds/hash.hpp"
 #include "dds/interfaces.hpp"
 #include "dds/lossy_transport.hpp"
 #include "dds/participant_impl.hpp"
@@ -73,25 +75,36 @@ std::vector<std::string> addressesOfAll() {
   return addresses;
 }
 
-/// On the port that RTPS has for it.
-rtps::Locator_t locatorOf(const std::string& address) {
+/// Port 0: the one that RTPS has for it.
+rtps::Locator_t locatorOf(const std::string& address, std::uint32_t port = 0) {
   rtps::Locator_t locator;
   locator.kind = LOCATOR_KIND_UDPv4;
-  locator.port = 0;
+  locator.port = port;
   (void)inet_pton(AF_INET, address.c_str(), &locator.address[12]);
   return locator;
 }
 
-/// Where others reach a participant that uses several interfaces. Fast DDS would leave the loopback out, the one
-/// address at which those who are on the loopback alone, as Baton's own processes are, can send to it. Once one address
-/// is given the group of discovery has to be given as well.
-void announceAddresses(const std::vector<std::string>& addresses, DomainParticipantQos& qos) {
+/// Where a participant announces itself and listens for others. Each discovers each: in one group, the work would grow
+/// with the square of all processes of all cells. So a cell has a group of its own. It announces itself in the group of
+/// RTPS as well, where all other programs listen; one that finds it there answers it directly. Two cells with the same
+/// group find each other, which is only slower.
+void discoverIn(const std::string& cell, int domain, const std::vector<std::string>& addresses,
+                DomainParticipantQos& qos) {
+  constexpr const char* kGroupOfAll = "239.255.0.1";
+  const std::uint32_t port = 7400 + 250 * static_cast<std::uint32_t>(domain);  // RTPS 2.5, 9.6.2.3
+  const std::string group = cell.empty() ? kGroupOfAll : discoveryGroup(cell);
   auto& builtin = qos.wire_protocol().builtin;
+  builtin.metatrafficMulticastLocatorList.push_back(locatorOf(group, port));
+  builtin.initialPeersList.push_back(locatorOf(group, port));  // 0 would be the ports of the first four participants
+  if (!cell.empty()) builtin.initialPeersList.push_back(locatorOf(kGroupOfAll, port));
+  // Once one locator is given all have to be.
+  for (const std::string& address : addresses) builtin.metatrafficUnicastLocatorList.push_back(locatorOf(address));
+  if (addresses.size() == 1) return;
+  // Of several, Fast DDS would leave the loopback out, the one address at which those who are on the loopback alone, as
+  // Baton's own processes are, can send to it.
   for (const std::string& address : addresses) {
-    builtin.metatrafficUnicastLocatorList.push_back(locatorOf(address));
     qos.wire_protocol().default_unicast_locator_list.push_back(locatorOf(address));
   }
-  builtin.metatrafficMulticastLocatorList.push_back(locatorOf("239.255.0.1"));
 }
 
 /// "name: value" lines for what a writer promises beyond the usual; nothing for what it does not.
@@ -139,10 +152,7 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
   const std::uint64_t one_in = loseOneIn();
   const auto udp = udpOn(options.addresses);
   qos.transport().user_transports.push_back(one_in > 0 ? losing(one_in, udp) : udp);
-  const bool is_everywhere = options.addresses.empty();
-  if (is_everywhere || options.addresses.size() > 1) {
-    announceAddresses(is_everywhere ? addressesOfAll() : options.addresses, qos);
-  }
+  discoverIn(options.cell, options.domain, options.addresses.empty() ? addressesOfAll() : options.addresses, qos);
   if (options.transport == Transport::kSharedMemory) {
     qos.transport().user_transports.push_back(std::make_shared<transport::SharedMemTransportDescriptor>());
   }
@@ -167,6 +177,11 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
                          "usable and memory to be free; check both and retry");
 }
 }  // namespace
+
+std::string discoveryGroup(const std::string& cell) {
+  const std::uint64_t hash = chainHash(0, std::as_bytes(std::span(cell)));  // the same on every host
+  return "239.255." + std::to_string(1 + hash / 254 % 254) + "." + std::to_string(1 + hash % 254);
+}
 
 Guid toGuid(const rtps::GUID_t& guid) {
   Guid result;

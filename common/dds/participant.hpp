@@ -56,6 +56,9 @@ struct DiscoveredWriter {
   std::string qos_text;  // "policy: value" lines, for the recording's metadata
 };
 
+/// The IPv4 multicast group in which the members of a cell find each other.
+[[nodiscard]] std::string discoveryGroup(const std::string& cell);
+
 /// Called on a DDS thread: hand it to the executor and return.
 using PeerCallback = std::function<void(const Peer&)>;
 using WriterCallback = std::function<void(const DiscoveredWriter&)>;

@@ -4,14 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <future>
 #include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,11 +104,9 @@ TEST(ParticipantTest, PeersSayWhoTheyAreAndLeave) {
     return std::nullopt;
   };
   {
-    ParticipantOptions options = memberOptions("plant", "elsewhere");  // peers are seen across partitions
-    options.cell = "left";
-    Participant plant(options);
+    Participant plant(memberOptions("plant", "elsewhere"));  // peers are seen across partitions
     ASSERT_TRUE(signal.waitUntil([&] { return find("plant").has_value(); }));
-    EXPECT_EQ(find("plant")->cell, "left");
+    EXPECT_EQ(find("plant")->cell, "unit");
     EXPECT_FALSE(find("watcher")) << "oneself is no peer";
   }
   // A farewell has no callback of its own. It comes on the thread that also tells of the next arrival, before or after
@@ -116,6 +117,45 @@ TEST(ParticipantTest, PeersSayWhoTheyAreAndLeave) {
     ASSERT_TRUE(signal.waitUntil([&] { return find(name).has_value(); }));
   }
   EXPECT_FALSE(find("plant"));
+}
+
+TEST(ParticipantTest, CellsDiscoverTheirOwnMembersAndWhoObservesAnyOfThem) {
+  Signal signal;
+  const auto member = [&](const std::string& cell) {
+    ParticipantOptions options = memberOptions(cell, "cell");
+    options.cell = cell;
+    return std::make_unique<Participant>(options, [&](const Peer&) { signal.notify(); });
+  };
+  const auto knows = [](const Participant& one, const std::string& service) {
+    const std::vector<Peer> peers = one.peers();
+    return std::any_of(peers.begin(), peers.end(), [&](const Peer& peer) { return peer.service == service; });
+  };
+  const auto left = member("left"), right = member("right"), anybody = member("");
+  EXPECT_TRUE(signal.waitUntil([&] { return knows(*anybody, "left") && knows(*anybody, "right"); }));
+  EXPECT_TRUE(signal.waitUntil([&] { return knows(*left, "") && knows(*right, ""); }));
+  EXPECT_FALSE(knows(*left, "right"));
+  EXPECT_FALSE(knows(*right, "left"));
+}
+
+TEST(DiscoveryGroup, IsACellsOwn) {
+  const auto partsOf = [](const std::string& group) {
+    int parts[4] = {};
+    EXPECT_EQ(std::sscanf(group.c_str(), "%d.%d.%d.%d", &parts[0], &parts[1], &parts[2], &parts[3]), 4) << group;
+    return std::to_array(parts);
+  };
+  std::set<std::string> groups;
+  for (int cell = 0; cell < 100; ++cell) {
+    const std::string group = discoveryGroup("cell" + std::to_string(cell));
+    EXPECT_EQ(group, discoveryGroup("cell" + std::to_string(cell)));
+    const std::array<int, 4> parts = partsOf(group);
+    EXPECT_EQ(parts[0], 239);
+    EXPECT_EQ(parts[1], 255);
+    EXPECT_TRUE(parts[2] >= 1 && parts[2] <= 254) << group << ": 239.255.0.1 is that of RTPS";
+    EXPECT_TRUE(parts[3] >= 1 && parts[3] <= 254) << group;
+    groups.insert(group);
+  }
+  EXPECT_EQ(groups.size(), 100U);
+  EXPECT_EQ(discoveryGroup("lab"), "239.255.46.119") << "processes of two builds find each other";
 }
 
 TEST(ParticipantTest, WatchWritersFindsThoseThereAreAndThoseToCome) {
