@@ -65,8 +65,8 @@ INSTANTIATE_TEST_SUITE_P(Each, StoppedService,
 
 /// Stops the holder for good at a step; the scenario's policy decides.
 struct SilentHolder {
-  explicit SilentHolder(const Bench& bench, const std::string& policy)
-      : run(bench, shortContact("baton: {fallback: [pd]}\nlate: {policy: " + policy + ", after_s: 0.3}\n"),
+  SilentHolder(const Bench& bench, const std::string& policy, const std::string& after_s)
+      : run(bench, shortContact("baton: {fallback: [pd]}\nlate: {policy: " + policy + ", after_s: " + after_s + "}\n"),
             {"--paused"}),
         pid(run.pidOf("tracking")) {
     EXPECT_EQ(bench.baton({"sim", "step", "150"}).exit_code, 0);
@@ -80,7 +80,7 @@ struct SilentHolder {
 TEST(LatePolicy, WaitGoesOnWhereItWasHoweverLongItTook) {
   const Bench bench;
   const std::string expected = undisturbedHash(bench);
-  const SilentHolder silent(bench, "wait");
+  const SilentHolder silent(bench, "wait", "0.3");
   // The plant warns later than after_s, where the other policies decide.
   EXPECT_TRUE(eventually([&] {
     return bench.baton({"logs", "plant"}).out.find("the step waits for") != std::string::npos;
@@ -93,7 +93,7 @@ TEST(LatePolicy, WaitGoesOnWhereItWasHoweverLongItTook) {
 
 TEST(LatePolicy, FallbackGivesTheBatonToTheNext) {
   const Bench bench;
-  const SilentHolder silent(bench, "fallback");
+  const SilentHolder silent(bench, "fallback", "2");
   const nlohmann::json result = silent.run.result();
   EXPECT_EQ(result.at("state"), "finished") << result;
   EXPECT_EQ(result.at("exit_code"), 1) << "a controller lost the baton: " << result;
@@ -105,7 +105,7 @@ TEST(LatePolicy, FallbackGivesTheBatonToTheNext) {
 
 TEST(LatePolicy, AbortEndsTheRunWithTheReason) {
   const Bench bench;
-  const SilentHolder silent(bench, "abort");
+  const SilentHolder silent(bench, "abort", "2");
   const nlohmann::json result = silent.run.result();
   EXPECT_EQ(result.at("exit_code"), 4) << result;
   EXPECT_EQ(result.at("state"), "aborted") << result;
