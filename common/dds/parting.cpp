@@ -10,7 +10,10 @@ namespace {
 std::atomic<bool> has_leftover = false;
 }
 
-void noteLeftover() noexcept { has_leftover = true; }
+void noteLeftover() noexcept {
+  has_leftover = true;
+  std::fputs("DDS does not let go of this process (forged RTPS?): it ends without waiting any longer\n", stderr);
+}
 
 int leave(int exit_code) {
   if (!has_leftover) return exit_code;

@@ -13,13 +13,13 @@ namespace baton::dds {
 /// How long the end of a participant and its endpoints may take. It takes milliseconds.
 inline constexpr std::chrono::seconds kPartingPatience{10};
 
-/// Something that uses DDS could not be destroyed: leave() then runs no destructors.
+/// Says on standard error that something which uses DDS could not be destroyed. leave() then runs no destructors.
 void noteLeftover() noexcept;
 
 /// Destroys `owner` and returns true. When that does not end in time, leaves it as it is with the thread that tries,
 /// and returns false; the process must end by leave().
 template <class Owner>
-bool partFrom(std::unique_ptr<Owner> owner, std::chrono::milliseconds patience = kPartingPatience) {
+[[nodiscard]] bool partFrom(std::unique_ptr<Owner> owner, std::chrono::milliseconds patience = kPartingPatience) {
   std::packaged_task<void()> end([owner = std::move(owner)]() mutable { owner.reset(); });
   const std::future<void> ended = end.get_future();
   std::thread thread(std::move(end));
@@ -31,6 +31,23 @@ bool partFrom(std::unique_ptr<Owner> owner, std::chrono::milliseconds patience =
   noteLeftover();
   return false;
 }
+
+/// Parts from what it holds, whichever way its scope is left.
+template <class Owner>
+class Parting {
+ public:
+  template <class... Arguments>
+  explicit Parting(Arguments&&... arguments) : owner_(std::make_unique<Owner>(std::forward<Arguments>(arguments)...)) {}
+  ~Parting() { (void)partFrom(std::move(owner_)); }
+  Parting(const Parting&) = delete;
+  Parting& operator=(const Parting&) = delete;
+
+  [[nodiscard]] Owner& operator*() const { return *owner_; }
+  [[nodiscard]] Owner* operator->() const { return owner_.get(); }
+
+ private:
+  std::unique_ptr<Owner> owner_;
+};
 
 /// What main() returns. Does not return when something could not be destroyed: the end of the program would wait for
 /// it.

@@ -61,18 +61,20 @@ Trial tryOne(const Kill& kill, const Scenario& scenario, const std::string& undi
   trial.objection = objectionTo(kill, trial.run, record, scenario, undisturbed_hash);
 
   run.out = (own / "rerun.mcap").string();
-  ExitCode code = ExitCode::kOk;
+  bool was_interrupted = false;
   try {
     const Rerun again = rerun(trial.recording, own, run, [&](RunSession& session) {
-      return code = session.follow([](const auto&) {}, [](const msg::SimStatus&) { return false; })
-                        .value_or(ExitCode::kFailed);
+      const std::optional<ExitCode> ended =
+          session.follow([](const auto&) {}, [](const msg::SimStatus&) { return false; });
+      was_interrupted = session.wasInterrupted();
+      return ended.value_or(ExitCode::kFailed);
     });
     trial.repetition = again.text();
     trial.is_repeated = again.isIdentical();
   } catch (const UsageError& error) {
     trial.repetition = error.what();  // the recording has nothing that could be repeated
   }
-  expectUninterrupted(code);
+  if (was_interrupted) expectUninterrupted(ExitCode::kInterrupted);
   if (!trial.isGood()) return trial;
   fs::remove_all(own);
   if (request.out.empty()) fs::remove(trial.recording);

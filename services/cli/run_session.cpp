@@ -130,7 +130,8 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
   for (const std::string& warning : scenario.warnings) std::fprintf(stderr, "baton: warning: %s\n", warning.c_str());
   if (const std::optional<RunInfo> other = activeRun(request.domain, request.cell)) {
     throw UnavailableError("cell " + request.cell + " is in use by run " + other->run + " of " + other->scenario +
-                           ": end it with `baton down --cell " + request.cell + "`, or choose another --cell");
+                           ": end it with `baton down --cell " + request.cell + " --domain " +
+                           std::to_string(request.domain) + "`, or choose another --cell");
   }
   info_.cell = request.cell;
   info_.domain = request.domain;
@@ -172,7 +173,7 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
 
 std::optional<ExitCode> RunSession::follow(const std::function<void(const RunProgress&)>& progress,
                                            const std::function<bool(const msg::SimStatus&)>& until) {
-  auto onlooker = std::make_unique<Onlooker>(info_);
+  const dds::Parting<Onlooker> onlooker(info_);
   int passed_on = 0;
   for (;;) {
     int how = 0;
@@ -180,7 +181,6 @@ std::optional<ExitCode> RunSession::follow(const std::function<void(const RunPro
     const RunProgress now = onlooker->latest();
     if (ended == info_.supervisor_pid) {
       progress(now);
-      dds::partFrom(std::move(onlooker));
       return WIFEXITED(how) ? static_cast<ExitCode>(WEXITSTATUS(how)) : ExitCode::kFailed;
     }
     if (passed_on < caught_signals) {
@@ -197,6 +197,8 @@ std::optional<ExitCode> RunSession::follow(const std::function<void(const RunPro
 nlohmann::ordered_json readResult(const std::string& folder) {
   return nlohmann::ordered_json::parse(readFile(fs::path(folder) / "result.json"));
 }
+
+bool RunSession::wasInterrupted() const { return caught_signals > 0; }
 
 nlohmann::ordered_json RunSession::result() const {
   try {

@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <memory>
+#include <optional>
 
 #include "dds/parting.hpp"
 #include "runtime/command_line.hpp"
@@ -55,7 +55,7 @@ ExitCode supervise(int argc, char** argv) {
   } else if (info.recording.empty()) {
     info.recording = (std::filesystem::path(info.folder) / (scenario.name + ".mcap")).string();
   }
-  const CellLock lock(info);
+  std::optional<CellLock> lock(info);
   // The run keeps the experiment as it was, whatever becomes of the files.
   keepExperiment(info, scenario);
   makeKeyWhenMissing(info);
@@ -77,10 +77,10 @@ ExitCode supervise(int argc, char** argv) {
   options.key_file = keyFile(info);
   options.is_open = is_open;
   options.clock = info.clock;
-  auto service = std::make_unique<Service>(options, std::move(scenario));
+  const dds::Parting<Service> service(options, std::move(scenario));
   held.release();
   const ExitCode code = Supervisor(*service, deployment).run();
-  dds::partFrom(std::move(service));
+  lock.reset();  // the cell is free, however long DDS takes
   return code;
 }
 

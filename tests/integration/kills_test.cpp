@@ -1,7 +1,11 @@
 // One kill of every kind, on real processes.
 #include <gtest/gtest.h>
+#include <signal.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <set>
+#include <system_error>
 
 #include "support/processes.hpp"
 
@@ -26,6 +30,28 @@ TEST(Kills, EveryRunEndsAsToldAndRepeatsBitForBit) {
   EXPECT_EQ(kinds.size(), 12U);
   EXPECT_TRUE(eventually([&] { return processesWith(bench.folder().string()).empty(); }));
 }
+
+/// Ctrl-C when this file has appeared: the run's own exit code may say what became of the victim instead.
+class InterruptedKills : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(InterruptedKills, EndsAtOnce) {
+  Bench bench;
+  const int pid = bench.start("baton",
+                              {"kills", "--runs", "200", "--out", (bench.folder() / "kills").string(), "--domain",
+                               std::to_string(bench.domain())},
+                              "kills.log");
+  ASSERT_TRUE(eventually([&] {
+    std::error_code still_changing;
+    const std::filesystem::recursive_directory_iterator all(bench.folder() / "kills", still_changing), end;
+    return std::any_of(all, end, [](const auto& entry) { return entry.path().filename() == GetParam(); });
+  }));
+  kill(pid, SIGINT);
+  EXPECT_EQ(bench.wait(pid), 130);
+  EXPECT_TRUE(eventually([&] { return processesWith(bench.folder().string()).empty(); }));
+}
+
+INSTANTIATE_TEST_SUITE_P(In, InterruptedKills, ::testing::Values("001-holder-killed.mcap", "rerun.mcap"),
+                         [](const auto& file) { return std::string(file.index == 0 ? "ARun" : "ARepetition"); });
 
 TEST(Kills, AScenarioWithoutRoomForThemIsRefused) {
   const Bench bench;

@@ -140,7 +140,7 @@ KilledRun killRun(const Scenario& scenario, const std::optional<Kill>& kill, con
       session.follow([&](const auto&) { killer.resume(services); }, [](const msg::SimStatus&) { return false; });
   return {.service = killer.service(),
           .step = killer.step(),
-          .exit_code = ended.value_or(ExitCode::kFailed),
+          .exit_code = session.wasInterrupted() ? ExitCode::kInterrupted : ended.value_or(ExitCode::kFailed),
           .result = session.result()};
 }
 

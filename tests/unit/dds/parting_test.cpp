@@ -1,23 +1,32 @@
 #include "dds/parting.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <future>
-#include <iostream>
 
 namespace baton::dds {
 namespace {
 
 /// What hangs in its destructor until it is let go.
 struct Hanging {
-  std::shared_future<void> until;
+  explicit Hanging(std::shared_future<void> until_in) : until(std::move(until_in)) {}
   ~Hanging() { until.wait(); }
+  Hanging(const Hanging&) = delete;
+  Hanging& operator=(const Hanging&) = delete;
+  std::shared_future<void> until;
 };
 
 TEST(Parting, WhatCanBeDestroyedIs) {
   const auto used = std::make_shared<int>(1);
   EXPECT_TRUE(partFrom(std::make_unique<std::shared_ptr<int>>(used)));
+  EXPECT_EQ(used.use_count(), 1);
+  {
+    const Parting<std::shared_ptr<int>> held(used);
+    EXPECT_EQ(**held, 1);
+    EXPECT_EQ(used.use_count(), 2);
+  }
   EXPECT_EQ(used.use_count(), 1);
   EXPECT_EQ(leave(3), 3);
 }
@@ -27,13 +36,13 @@ TEST(PartingDeathTest, AProcessEndsWithItsWordsAndItsExitCodeAlthoughSomethingHa
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   const auto hang = [] {
     static std::promise<void> never;
-    static Hanging at_exit{never.get_future().share()};  // as the factory of participants would hang
-    std::cout << "the result\n";
+    static const Hanging at_exit(never.get_future().share());  // as the factory of participants would hang
+    dup2(STDERR_FILENO, STDOUT_FILENO);                        // which the test reads
+    std::printf("the result");                                 // in a buffer, as when it goes to a file
     if (partFrom(std::make_unique<Hanging>(at_exit.until), std::chrono::milliseconds(1))) return 1;
-    std::fputs("the reason\n", stderr);
     return leave(4);
   };
-  EXPECT_EXIT(std::exit(hang()), testing::ExitedWithCode(4), "the reason");
+  EXPECT_EXIT(std::exit(hang()), testing::ExitedWithCode(4), "DDS does not let go.*\nthe result");
 }
 
 }  // namespace
