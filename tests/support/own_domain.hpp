@@ -5,7 +5,9 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstddef>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 
@@ -27,6 +29,7 @@ namespace baton::test {
       const int holder = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
       const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
       if (::bind(holder, reinterpret_cast<const sockaddr*>(&address), length) == 0) return candidate;
+      if (errno != EADDRINUSE) throw std::runtime_error(std::string("no domain: ") + std::strerror(errno));
       close(holder);
     }
     throw std::runtime_error("all " + std::to_string(kDomains) + " domains for tests are taken");
