@@ -85,19 +85,26 @@ rtps::Locator_t locatorOf(const std::string& address, std::uint32_t port = 0) {
 }
 
 /// Where a participant announces itself and listens for others. Each discovers each: in one group, the work would grow
-/// with the square of all processes of all cells. So a cell has a group of its own. It announces itself in the group of
-/// RTPS as well, where all other programs listen; one that finds it there answers it directly. Two cells with the same
-/// group find each other, which is only slower.
-void discoverIn(const std::string& cell, int domain, const std::vector<std::string>& addresses,
+/// with the square of all processes of all cells. So the members of a cell listen in a group of its own. All announce
+/// themselves in the group of RTPS as well, where every other program listens, and those of ours that read or write in
+/// other cells; who finds a member there answers it directly. (In one of the two alone: Fast DDS binds one socket a
+/// port, to the first group.) Two cells with the same group find each other, which is only slower.
+void discoverIn(const ParticipantOptions& options, const std::vector<std::string>& addresses,
                 DomainParticipantQos& qos) {
-  constexpr const char* kGroupOfAll = "239.255.0.1";
-  const std::uint32_t port = 7400 + 250 * static_cast<std::uint32_t>(domain);  // RTPS 2.5, 9.6.2.3
-  const std::string group = cell.empty() ? kGroupOfAll : discoveryGroup(cell);
+  const std::uint32_t port = 7400 + 250 * static_cast<std::uint32_t>(options.domain);  // RTPS 2.5, 9.6.2.3
+  const rtps::Locator_t group_of_all = locatorOf("239.255.0.1", port),
+                        own = locatorOf(discoveryGroup(options.cell), port);
+  const bool is_a_member = !options.cell.empty();
+  const bool keeps_to_its_cell = is_a_member && options.other_partitions.empty() && options.also_read.empty();
   auto& builtin = qos.wire_protocol().builtin;
-  builtin.metatrafficMulticastLocatorList.push_back(locatorOf(group, port));
-  builtin.initialPeersList.push_back(locatorOf(group, port));  // 0 would be the ports of the first four participants
-  if (!cell.empty()) builtin.initialPeersList.push_back(locatorOf(kGroupOfAll, port));
-  // Once one locator is given all have to be.
+  builtin.metatrafficMulticastLocatorList.push_back(keeps_to_its_cell ? own : group_of_all);
+  // Not port 0 here: as initial peers those would be the ports of the first four participants.
+  builtin.initialPeersList.push_back(group_of_all);
+  if (is_a_member) builtin.initialPeersList.push_back(own);
+  for (const std::string& cell : options.other_cells) {
+    builtin.initialPeersList.push_back(locatorOf(discoveryGroup(cell), port));
+  }
+  // Once one locator of discovery is given, Fast DDS adds none, also not of shared memory: discovery is by UDP.
   for (const std::string& address : addresses) builtin.metatrafficUnicastLocatorList.push_back(locatorOf(address));
   if (addresses.size() == 1) return;
   // Of several, Fast DDS would leave the loopback out, the one address at which those who are on the loopback alone, as
@@ -152,17 +159,17 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
   const std::uint64_t one_in = loseOneIn();
   const auto udp = udpOn(options.addresses);
   qos.transport().user_transports.push_back(one_in > 0 ? losing(one_in, udp) : udp);
-  discoverIn(options.cell, options.domain, options.addresses.empty() ? addressesOfAll() : options.addresses, qos);
+  discoverIn(options, options.addresses.empty() ? addressesOfAll() : options.addresses, qos);
   if (options.transport == Transport::kSharedMemory) {
     qos.transport().user_transports.push_back(std::make_shared<transport::SharedMemTransportDescriptor>());
   }
 
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
-  // DDS answers a new participant at once; the period is for lost datagrams. Each participant sends to every other, so
-  // the traffic grows with the square of their number. A service that still waits for a peer calls announce(). The
-  // lease is longer than any stop of a process (SIGSTOP); the supervisor notices processes that end, not DDS. Another
-  // reason for a long lease: Fast DDS 2.9.1 checks a lease once per lease duration, and an assertion ends the process
-  // when its participant leaves during the check.
+  // DDS answers a new member of the cell at once; the period is for lost datagrams, and for who does not speak in the
+  // cell's group. Each participant sends to every other, so the traffic grows with the square of their number. A
+  // service that still waits for a peer calls announce(). The lease is longer than any stop of a process (SIGSTOP); the
+  // supervisor notices processes that end, not DDS. Another reason for a long lease: Fast DDS 2.9.1 checks a lease once
+  // per lease duration, and an assertion ends the process when its participant leaves during the check.
   discovery.leaseDuration_announcementperiod = {3, 0};
   discovery.leaseDuration = {options.lease_s, 0};
   discovery.initial_announcements.count = 5;

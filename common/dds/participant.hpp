@@ -23,6 +23,7 @@ struct ParticipantOptions {
   std::vector<std::string> addresses{kLoopback};  // IPv4, of the interfaces it uses; empty: all of this machine
   int lease_s = 3600;                             // how long the others take it for alive after its last word
   std::string cell;                               // the cell this process belongs to, empty for observers of any
+  std::vector<std::string> other_cells{};         // to find at once; any other is found when it announces itself again
   std::string run;      // the run within the cell; what is left over from another run is told apart by this
   std::string service;  // name of the service, unique in the run
   Transport transport = Transport::kUdp;

@@ -8,7 +8,7 @@ template <class Status>
 class StatusPace {
  public:
   /// Ticks from one writing to the next when nothing changes: for readers that do not ask for the last sample.
-  static constexpr int kTicks = 20;
+  static constexpr int kTicks = 10;
 
   /// Asked at every tick with what would be written now.
   [[nodiscard]] bool isDue(const Status& now) { return !(now == last_) || ++unchanged_ >= kTicks; }

@@ -190,7 +190,7 @@ void Supervisor::childEnded(Child& child, const Child::End& end) {
   if (!anyRunning()) service_.stop();
 }
 
-/// An exit is heard of at once, that the run has begun a little later: the plant says so ten times a second.
+/// An exit is heard of at once, that the run has begun a little later, by DDS.
 void Supervisor::whenBegunOrNot(int looks, const std::function<void()>& judge) {
   if (startup_s_ >= 0.0 || looks == 0) return judge();
   auto timer = std::make_shared<boost::asio::steady_timer>(service_.executor(), kNewsEvery);

@@ -11,6 +11,7 @@
 
 #include "base/text.hpp"
 #include "dds/interfaces.hpp"
+#include "runtime/cell.hpp"
 #include "runtime/log.hpp"
 #include "runtime/recording_parts.hpp"
 #include "runtime/signals.hpp"
@@ -46,6 +47,10 @@ TrafficRecorder::TrafficRecorder(TrafficOptions options)
 dds::ParticipantOptions TrafficRecorder::participantOptions() const {
   constexpr int kLease_s = 60;
   std::vector<std::string> read = readPartitions(options_.partitions);
+  std::vector<std::string> cells;
+  for (const RunInfo& run : activeRuns()) {
+    if (run.domain == options_.domain) cells.push_back(run.cell);
+  }
   const std::string first = read.front();
   read.erase(read.begin());
   return {.domain = options_.domain,
@@ -54,6 +59,7 @@ dds::ParticipantOptions TrafficRecorder::participantOptions() const {
           .addresses = dds::addressesOf(options_.interfaces, dds::interfaces()),
           .lease_s = kLease_s,
           .cell = "",
+          .other_cells = std::move(cells),
           .run = "",
           .service = "traffic-recorder"};
 }

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <map>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "bench/statistics.hpp"
@@ -23,8 +25,13 @@ constexpr double kCrawl_steps_per_s = 1e-3;  // until they are let go they do no
 /// Watches the plants of all cells and speaks to them at once.
 class Starter {
  public:
-  Starter(int domain, const std::string& partitions)
-      : participant_({.domain = domain, .partition = partitions, .cell = "", .run = "", .service = "bench"}),
+  Starter(int domain, const std::string& partitions, std::vector<std::string> cells)
+      : participant_({.domain = domain,
+                      .partition = partitions,
+                      .cell = "",
+                      .other_cells = std::move(cells),
+                      .run = "",
+                      .service = "bench"}),
         statuses_(participant_, dds::topics::kSimStatus,
                   [this](const msg::SimStatus& status, const dds::RawSample& sample) { onStatus(status, sample); }),
         requests_(participant_, dds::topics::kSimRequest) {}
@@ -63,8 +70,10 @@ class Starter {
     if (!peer || peer->service != kPlantName || status.state() != msg::SIM_STATE_RUNNING) return;
     const std::lock_guard lock(mutex_);
     running_.insert(prefix);
-    // While they crawl the machine is idle and a word is heard when it is said.
-    if (let_go_ == Clock::time_point{}) last_words_[peer->cell] = {status.elapsed_s(), Clock::now()};
+    if (let_go_ != Clock::time_point{}) return;
+    // While they crawl the machine is idle and a word is heard when it is said, but for the last one before we came.
+    const std::chrono::nanoseconds age(dds::WallClock().now() - sample.source_timestamp_ns);
+    last_words_[peer->cell] = {status.elapsed_s(), Clock::now() - age};
   }
   struct Word {
     double elapsed_s;
@@ -87,7 +96,9 @@ Measurement measureCells(const Case& one, int steps, Programs& programs) {
   const std::string scenario = programs.write("cells.yaml", scenarioText(one.uses_force, one.standbys, steps, crawl));
   const std::string prefix = "bench-" + std::to_string(getpid()) + "-";
   const auto cellName = [&](int index) { return prefix + std::to_string(index); };
-  Starter starter(programs.domain(), prefix + "*");
+  std::vector<std::string> cells;
+  for (int i = 0; i < one.cells; ++i) cells.push_back(cellName(i));
+  Starter starter(programs.domain(), prefix + "*", cells);
   for (int i = 0; i < one.cells; ++i) {
     programs.start("baton", {"run", scenario, "--cell", cellName(i), "--domain", std::to_string(programs.domain()),
                              "--no-recording", "--open", "--json"});

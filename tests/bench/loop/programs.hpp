@@ -38,7 +38,7 @@ class Programs {
 
   /// Writes a file into the folder and returns its path.
   [[nodiscard]] std::string write(const std::string& name, const std::string& text) const;
-  /// A DDS domain that few others use.
+  /// A DDS domain that no other test or benchmark uses.
   [[nodiscard]] int domain() const { return domain_; }
 
  private:

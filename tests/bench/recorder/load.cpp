@@ -28,7 +28,7 @@ constexpr const char* kWriter = "baton-bench-writer";
 void waitForRun(const std::string& cell, Programs& programs) {
   std::atomic<bool> has_begun{false};
   dds::Participant participant(
-      {.domain = programs.domain(), .partition = cell + "/*", .cell = "", .run = "", .service = "bench"});
+      {.domain = programs.domain(), .partition = cell + "/*", .cell = cell, .run = "", .service = "bench"});
   const dds::Reader<msg::PlantState> states(participant, dds::topics::kPlantState,
                                             [&](const msg::PlantState&, const dds::RawSample&) { has_begun = true; });
   programs.waitUntil([&] { return has_begun.load(); });

@@ -31,11 +31,17 @@ struct Plan {
   std::int64_t begin_ns = 0;  // of the steady clock, the same for all processes
 };
 
+/// Its members find a writer of their cell at once.
+std::string cellOf(const Plan& plan) { return plan.partition.substr(0, plan.partition.find('/')); }
+
 class LoadWriters {
  public:
   explicit LoadWriters(const Plan& plan)
-      : participant_(
-            {.domain = plan.domain, .partition = plan.partition, .cell = "", .run = "", .service = plan.name}) {
+      : participant_({.domain = plan.domain,
+                      .partition = plan.partition,
+                      .cell = cellOf(plan),
+                      .run = "",
+                      .service = plan.name}) {
     for (int i = 0; i < plan.topics; ++i) {
       writers_.push_back(std::make_unique<dds::RawWriter>(
           participant_,

@@ -38,7 +38,7 @@ std::string scenarioText(const SwapCase& one) {
 class Operator {
  public:
   Operator(int domain, const std::string& cell)
-      : participant_({.domain = domain, .partition = cell + "/*", .cell = "", .run = "", .service = "bench"}),
+      : participant_({.domain = domain, .partition = cell + "/*", .cell = cell, .run = "", .service = "bench"}),
         states_(participant_, dds::topics::kPlantState,
                 [this](const msg::PlantState& state, const dds::RawSample& sample) { onState(state, sample); }),
         outcomes_(participant_, dds::topics::kSwapOutcome,

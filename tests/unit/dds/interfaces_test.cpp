@@ -78,6 +78,7 @@ TEST(Interfaces, AReaderOnAllOfThemInAllPartitionsHearsWritersOnTheLoopback) {
   everywhere.partition = "*";
   everywhere.also_read = {""};
   everywhere.addresses = {};
+  everywhere.cell = "";  // as `record traffic` does it
   Participant guest(everywhere);
   ParticipantOptions without = memberOptions("without", "");
   without.partition = "";

@@ -26,6 +26,7 @@
 namespace baton::dds {
 namespace {
 
+using test::Inbox;
 using test::memberOptions;
 using test::Signal;
 
@@ -135,6 +136,20 @@ TEST(ParticipantTest, CellsDiscoverTheirOwnMembersAndWhoObservesAnyOfThem) {
   EXPECT_TRUE(signal.waitUntil([&] { return knows(*left, "") && knows(*right, ""); }));
   EXPECT_FALSE(knows(*left, "right"));
   EXPECT_FALSE(knows(*right, "left"));
+}
+
+TEST(ParticipantTest, WhoIsHeardElsewhereFindsMembersOfOtherCells) {
+  Signal signal;
+  ParticipantOptions options = memberOptions("replayer", "replay");
+  options.cell = "replay";
+  options.other_partitions = {test::testPartition("cell")};
+  Participant replayer(options), member(memberOptions("controller", "cell"));
+  const EndpointOptions endpoint{.topic = "heard", .type = "baton::test::A"};
+  Inbox inbox(signal);
+  RawWriter writer(replayer, endpoint, [&] { signal.notify(); });
+  RawReader reader(
+      member, endpoint, [&](const RawSample& sample) { inbox.put(sample); }, [&] { signal.notify(); });
+  EXPECT_TRUE(signal.waitUntil([&] { return !writer.matched().empty() && !reader.matched().empty(); }));
 }
 
 TEST(DiscoveryGroup, IsACellsOwn) {
