@@ -59,6 +59,7 @@ SchemaId Writer::addSchema(std::string_view name, std::string_view encoding, Byt
   appendSchema(state.record, state.schema);
   makeRoom(state.record.size());
   append(chunk_, state.record);
+  declared_bytes_ += state.record.size();
   state.declared_in = chunk_number_;
   schemas_.push_back(std::move(state));
   return schemas_.back().schema.id;
@@ -81,6 +82,7 @@ ChannelId Writer::addChannel(std::string_view topic, std::string_view message_en
                      .index = {.channel_id = id}};
   appendChannel(state.record, state.channel);
   makeRoom(state.record.size(), declarationBytes(state) - state.record.size());
+  declared_bytes_ += state.record.size();
   channels_.push_back(std::move(state));
   declare(channels_.back());
   return id;
@@ -195,7 +197,8 @@ WriterStatistics Writer::statistics() const {
           .written_messages = written_messages_,
           .chunks = chunk_indexes_.size(),
           .file_bytes = file_.size(),
-          .durable_bytes = file_.durableSize()};
+          .durable_bytes = file_.durableSize(),
+          .declared_bytes = declared_bytes_};
 }
 
 /// Closes the current chunk when it has no room for this record, and makes sure that adding it cannot fail half-way.

@@ -45,6 +45,7 @@ struct WriterStatistics {
   std::uint64_t chunks = 0;            // taken by the operating system
   std::uint64_t file_bytes = 0;        // taken by the operating system
   std::uint64_t durable_bytes = 0;     // known to be on the storage device
+  std::uint64_t declared_bytes = 0;    // of all schemas and channels: a chunk may repeat them, and the summary does
 };
 
 /// After a WriteError every call but the destructor throws that same error again: the file ends where it failed.
@@ -135,6 +136,7 @@ class Writer {
 
   Bytes chunk_;  // records of the current chunk
   std::uint64_t chunk_number_ = 1;
+  std::uint64_t declared_bytes_ = 0;
   std::size_t repeated_bytes_ = 0;  // declarations in the current chunk that an earlier one has too
   std::uint64_t chunk_messages_ = 0;
   std::uint64_t chunk_start_time_ns_ = 0;

@@ -182,8 +182,11 @@ void Recording::closeFile() {
 }
 
 Storage Recording::storage() const {
-  return {
-      .closed_bytes = closed_bytes_, .part_bytes = file_->statistics().file_bytes, .closed_parts = parts_.size() - 1};
+  const mcap::WriterStatistics file = file_->statistics();
+  return {.closed_bytes = closed_bytes_,
+          .part_bytes = file.file_bytes,
+          .declared_bytes = file.declared_bytes,
+          .closed_parts = parts_.size() - 1};
 }
 
 /// The account of each stream begins anew where the next part has the first of it.

@@ -13,8 +13,9 @@ namespace baton {
 
 /// How a recording stands on its disk.
 struct Storage {
-  std::uint64_t closed_bytes = 0;  // of parts that are finished
-  std::uint64_t part_bytes = 0;    // of the one being written
+  std::uint64_t closed_bytes = 0;    // of parts that are finished
+  std::uint64_t part_bytes = 0;      // of the one being written
+  std::uint64_t declared_bytes = 0;  // of its schemas and channels
   std::uint64_t closed_parts = 0;
   std::uint64_t free_bytes = 0;  // left on the disk
 };
@@ -22,7 +23,8 @@ struct Storage {
 enum class StorageVerdict { kGoOn, kDropOldest, kStop };
 
 /// What the part being written will grow by when it is ended now: its last chunk, the index, the certificate.
-[[nodiscard]] std::uint64_t closingBytes(const RecordingConfig& config, std::uint64_t part_bytes);
+[[nodiscard]] std::uint64_t closingBytes(const RecordingConfig& config, std::uint64_t part_bytes,
+                                         std::uint64_t declared_bytes = 0);
 [[nodiscard]] StorageVerdict judgeStorage(const RecordingConfig& config, const Storage& storage);
 /// Whether less than is to be left would be left on the disk, were it ended now.
 [[nodiscard]] bool isDiskLow(const RecordingConfig& config, const Storage& storage);

@@ -64,6 +64,15 @@ TEST(LowDisk, EndsTheRecordingOrDropsTheOldestSoEarlyThatSoMuchIsLeftBehindTheFi
   EXPECT_EQ(judgeStorage(config, low), StorageVerdict::kDropOldest);
 }
 
+TEST(LowDisk, CountsWhatTheLastChunkAndTheSummaryRepeat) {
+  RecordingConfig config;
+  config.min_free_bytes = 50 * kMB;
+  constexpr std::uint64_t kDeclared = 300'000;
+  const std::uint64_t least = 50 * kMB + config.chunk_bytes + 2 * kDeclared;
+  EXPECT_EQ(judgeStorage(config, {.declared_bytes = kDeclared, .free_bytes = least}), StorageVerdict::kStop);
+  EXPECT_EQ(judgeStorage(config, {.declared_bytes = kDeclared, .free_bytes = least + 100'000}), StorageVerdict::kGoOn);
+}
+
 TEST(Snapshot, IsWrittenOnlyWhereSoMuchIsLeftBehindIt) {
   RecordingConfig config;
   config.min_free_bytes = 50 * kMB;
