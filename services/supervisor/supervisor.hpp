@@ -39,7 +39,8 @@ class Supervisor {
   [[nodiscard]] std::string whatTheStartWaitsFor();
   void start(const std::string& role, const std::string& name, const std::string& law);
   void childEnded(Child& child, const Child::End& end);
-  void whenBegunOrNot(int looks, const std::function<void()>& judge);
+  void judgeWhenBegun(Child& child, const Child::End& end, int looks);
+  void endedWhileClosing(const Child& child, const Child::End& end);
   void childFailed(Child& child, const Child::End& end);
   void judge(const msg::SwapOutcome& swap);
   void endForThePlant();
