@@ -85,7 +85,7 @@ rtps::Locator_t locatorOf(const std::string& address, std::uint32_t port = 0) {
 }
 
 /// Where a participant announces itself and listens for others. Each discovers each: in one group, the work would grow
-/// with the square of all processes of all cells. So the members of a cell listen in a group of its own. All announce
+/// with the square of all processes of all cells. So the members of a cell listen in their group. All announce
 /// themselves in the group of RTPS as well, where every other program listens, and those of ours that read or write in
 /// other cells; who finds a member there answers it directly. (In one of the two alone: Fast DDS binds one socket a
 /// port, to the first group.) Two cells with the same group find each other, which is only slower.

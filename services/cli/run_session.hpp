@@ -56,7 +56,7 @@ class RunSession {
 
   /// result.json, once the supervisor has ended. Throws UnavailableError with the end of its log when there is none.
   [[nodiscard]] nlohmann::ordered_json result() const;
-  /// A signal asked for the end. The run may have ended for a reason of its own, and its exit code says that one.
+  /// A signal asked for the end. The run may have ended for another reason, and its exit code says that one.
   [[nodiscard]] bool wasInterrupted() const;
   [[nodiscard]] const RunInfo& info() const { return info_; }
   [[nodiscard]] std::string logFile() const { return info_.folder + "/supervisor.log"; }

@@ -432,7 +432,7 @@ TEST(Record, WhatIsLostInRealTimeIsCountedByWriterAndIsAGapInTheCertificate) {
   EXPECT_GT(lost["plant_state"], 0U);
 
   const Json after = certificateOf(second);
-  // On a machine that is too busy for it the second file has losses of its own.
+  // On a machine that is too busy for it the second file has losses too.
   const bool kept_up = after.at("gaps").empty();
   EXPECT_EQ(after.at("complete"), kept_up) << after.at("problems");
   EXPECT_NE(down.out.find(std::string("incomplete: live.mcap, an earlier recording of this run; the latest: ") +

@@ -31,7 +31,7 @@ TEST(Parting, WhatCanBeDestroyedIs) {
   EXPECT_EQ(leave(3), 3);
 }
 
-// In a process of its own: once something is left over, a process can only be left.
+// In another process: once something is left over, a process can only be left.
 TEST(PartingDeathTest, AProcessEndsWithItsWordsAndItsExitCodeAlthoughSomethingHangs) {
   testing::FLAGS_gtest_death_test_style = "threadsafe";
   const auto hang = [] {
