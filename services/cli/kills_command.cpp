@@ -61,20 +61,16 @@ Trial tryOne(const Kill& kill, const Scenario& scenario, const std::string& undi
   trial.objection = objectionTo(kill, trial.run, record, scenario, undisturbed_hash);
 
   run.out = (own / "rerun.mcap").string();
-  bool was_interrupted = false;
+  ExitCode code = ExitCode::kOk;
   try {
-    const Rerun again = rerun(trial.recording, own, run, [&](RunSession& session) {
-      const std::optional<ExitCode> ended =
-          session.follow([](const auto&) {}, [](const msg::SimStatus&) { return false; });
-      was_interrupted = session.wasInterrupted();
-      return ended.value_or(ExitCode::kFailed);
-    });
+    const Rerun again = rerun(trial.recording, own, run,
+                              [&](RunSession& session) { return code = followToItsEnd(session, [](const auto&) {}); });
     trial.repetition = again.text();
     trial.is_repeated = again.isIdentical();
   } catch (const UsageError& error) {
     trial.repetition = error.what();  // the recording has nothing that could be repeated
   }
-  if (was_interrupted) expectUninterrupted(ExitCode::kInterrupted);
+  expectUninterrupted(code);
   if (!trial.isGood()) return trial;
   fs::remove_all(own);
   if (request.out.empty()) fs::remove(trial.recording);

@@ -52,7 +52,8 @@ LawRunner::LawRunner(Service& service)
   service.onRewind([this](std::uint64_t step) { return isQuiet(step); }, [this] { forget(); });
   service.every(std::chrono::milliseconds(100), [this] {
     const std::lock_guard lock(service_.mutex());
-    if (status_pace_.isDue(status())) publishStatus();
+    const msg::ControllerStatus now = status();
+    if (status_pace_.isDue(now)) publish(now);
   });
 }
 
@@ -162,7 +163,7 @@ void LawRunner::publish(std::uint64_t step, bool commands) {
     const std::uint64_t inputs_hash = dds::inputsHash(std::span(hashes_[slot]).first(inputs));
     toMessage(service_.stampOf(step), config_.name, history_[slot], inputs_hash, message_);
     // Before its command: the plant has the cause when it takes the baton away.
-    if (!has_effort) publishStatus();
+    if (!has_effort) publish(status());
     (commands ? command_out_ : shadow_out_).write(message_);
   }
   if (is_news) {
@@ -267,10 +268,9 @@ msg::ControllerStatus LawRunner::status() const {
   return status;
 }
 
-void LawRunner::publishStatus() {
-  const msg::ControllerStatus now = status();
-  status_out_.write(now);
-  status_pace_.wrote(now);
+void LawRunner::publish(const msg::ControllerStatus& status) {
+  status_out_.write(status);
+  status_pace_.wrote(status);
 }
 
 }  // namespace baton

@@ -41,7 +41,7 @@ class LawRunner {
   [[nodiscard]] bool isQuiet(std::uint64_t step) const;
   void forget();
   [[nodiscard]] msg::ControllerStatus status() const;
-  void publishStatus();
+  void publish(const msg::ControllerStatus& status);
   [[nodiscard]] bool isIncoming(const msg::SwapPlan& plan) const;
 
   Service& service_;

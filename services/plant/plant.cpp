@@ -135,7 +135,7 @@ void Plant::startWhenAllAreReady() {
   service_.event(msg::SEVERITY_INFO, "start", holderText() + " holds the baton");
   if (service_.options().starts_paused) master_.pause();
   openStep();
-  publishStatus();
+  publish(status());
   publishBaton();
   if (isRealtime()) {
     armTimer();
@@ -308,7 +308,7 @@ void Plant::finish() {
   publishDryRuns();
   refuseScheduled("the run has ended");
   if (reset_) dropReset("the run has ended");
-  publishStatus();
+  publish(status());
   service_.stepDone(master_.step());
   service_.runEnded(master_.step(), true);
 }

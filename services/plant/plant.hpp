@@ -108,7 +108,7 @@ class Plant {
   void publishReport(bool cut_short);
   // plant_outputs.cpp
   [[nodiscard]] msg::SimStatus status() const;
-  void publishStatus();
+  void publish(const msg::SimStatus& status);
   void repeatStatus();
   void armTimer();
   void watchLateness();

@@ -243,7 +243,7 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
   }
   proceed();
   armTimer();
-  publishStatus();
+  publish(status());
 }
 
 }  // namespace baton

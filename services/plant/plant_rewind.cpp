@@ -95,7 +95,7 @@ void Plant::finishReset() {
   reply_out_.write(reply);
   publishSwapActions();
   openStep();
-  publishStatus();
+  publish(status());
   publishBaton();
   armTimer();
   if (!isRealtime()) proceed();

@@ -28,6 +28,10 @@ bool isRefusal(const Child::End& end) {
          (end.value == static_cast<int>(ExitCode::kUsage) || end.value == static_cast<int>(ExitCode::kUnavailable));
 }
 
+std::string endedInTheMiddle(const std::string& name, const Child::End& end) {
+  return name + " ended in the middle of the run: " + end.text();
+}
+
 }  // namespace
 
 Supervisor::Supervisor(Service& service, Deployment deployment)
@@ -198,7 +202,7 @@ void Supervisor::endedWhileClosing(const Child& child, const Child::End& end) {
     if (!is_in_order) fail(ExitCode::kFailed, "the recording is not complete");
     stopChildren();
   } else if (!is_in_order && !asked_to_end_.contains(name) && !scenario_.wantsFaultOf(name)) {
-    fail(ExitCode::kFailed, name + " ended in the middle of the run: " + end.text());
+    fail(ExitCode::kFailed, endedInTheMiddle(name, end));
   }
 }
 
@@ -217,7 +221,7 @@ void Supervisor::childFailed(Child& child, const Child::End& end) {
   const std::string& name = child.name();
   const bool has_started = startup_s_ >= 0.0;
   const bool is_wanted = asked_to_end_.erase(name) > 0;
-  const std::string why = name + (is_wanted ? " was stopped" : " ended in the middle of the run: " + end.text());
+  const std::string why = is_wanted ? name + " was stopped" : endedInTheMiddle(name, end);
   service_.event(is_wanted ? msg::SEVERITY_INFO : msg::SEVERITY_ERROR, "child_exit", why);
   const bool is_controller = roles_[name] == "controller";
   const bool is_restarted = has_started && !is_wanted && restarts_left_[name]-- > 0;

@@ -116,6 +116,11 @@ class Killer {
 
 }  // namespace
 
+ExitCode followToItsEnd(RunSession& session, const std::function<void(const RunProgress&)>& progress) {
+  const std::optional<ExitCode> ended = session.follow(progress, [](const msg::SimStatus&) { return false; });
+  return session.wasInterrupted() ? ExitCode::kInterrupted : ended.value_or(ExitCode::kFailed);
+}
+
 KilledRun killRun(const Scenario& scenario, const std::optional<Kill>& kill, const std::filesystem::path& folder,
                   RunRequest request) {
   std::vector<ScenarioSetting> settings{{"robot", "./robot.yaml"}};
@@ -136,12 +141,8 @@ KilledRun killRun(const Scenario& scenario, const std::optional<Kill>& kill, con
   RunSession session(request, true);
   Killer killer(session.info(), kill);
   std::vector<std::string> services = serviceNames(scenario);
-  const std::optional<ExitCode> ended =
-      session.follow([&](const auto&) { killer.resume(services); }, [](const msg::SimStatus&) { return false; });
-  return {.service = killer.service(),
-          .step = killer.step(),
-          .exit_code = session.wasInterrupted() ? ExitCode::kInterrupted : ended.value_or(ExitCode::kFailed),
-          .result = session.result()};
+  const ExitCode code = followToItsEnd(session, [&](const auto&) { killer.resume(services); });
+  return {.service = killer.service(), .step = killer.step(), .exit_code = code, .result = session.result()};
 }
 
 }  // namespace baton

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -19,6 +20,9 @@ struct KilledRun {
   ExitCode exit_code = ExitCode::kOk;
   nlohmann::ordered_json result;  // as in result.json
 };
+
+/// Follows a run until its supervisor ends. kInterrupted when a signal asked for that, whatever became of the run.
+[[nodiscard]] ExitCode followToItsEnd(RunSession& session, const std::function<void(const RunProgress&)>& progress);
 
 /// Runs `scenario` in `folder`, recorded to `request.out`, with this kill or undisturbed.
 [[nodiscard]] KilledRun killRun(const Scenario& scenario, const std::optional<Kill>& kill,
