@@ -7,6 +7,7 @@
 #include <cstring>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include "base/types.hpp"
 
@@ -67,7 +68,7 @@ class StateArchive {
     static_assert(kMaxRows != Eigen::Dynamic, "only vectors with inline storage");
     auto rows = static_cast<std::uint32_t>(vector.size());
     visit(rows);
-    const bool fits = kRows == Eigen::Dynamic ? rows <= kMaxRows : rows == kRows;
+    const bool fits = kRows == Eigen::Dynamic ? std::cmp_less_equal(rows, kMaxRows) : std::cmp_equal(rows, kRows);
     if (!is_good_ || !fits) {
       is_good_ = false;
       return;

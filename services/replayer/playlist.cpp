@@ -99,7 +99,7 @@ void Playlist::chooseChannels(const ReplayOptions& options) {
   }
   for (const auto& [topic, reason] : contradictions(endpoints_)) {
     noteLeftOut(reason);
-    std::erase_if(endpoints_, [&](const auto& entry) { return entry.second.topic == topic; });
+    std::erase_if(endpoints_, [&name = topic](const auto& entry) { return entry.second.topic == name; });
   }
   for (const auto& [id, endpoint] : endpoints_) filter_.channels.push_back(id);
   expectTopics();
