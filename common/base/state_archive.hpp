@@ -17,11 +17,11 @@ class StateArchive {
  public:
   /// Saves into `room`.
   [[nodiscard]] static StateArchive into(std::span<std::byte> room) noexcept {
-    return {room.data(), nullptr, room.size()};
+    return {room.data(), nullptr, room.size(), false};
   }
   /// Restores from `saved`.
   [[nodiscard]] static StateArchive from(std::span<const std::byte> saved) noexcept {
-    return {nullptr, saved.data(), saved.size()};
+    return {nullptr, saved.data(), saved.size(), true};
   }
 
   /// Numbers, flags and vectors, in the same order whether they are saved or restored. Once something does not fit,
@@ -34,7 +34,7 @@ class StateArchive {
   /// What was restored cannot be.
   void fail() noexcept { is_good_ = false; }
 
-  [[nodiscard]] bool isRestoring() const noexcept { return to_ == nullptr; }
+  [[nodiscard]] bool isRestoring() const noexcept { return is_restoring_; }
   /// Everything fitted; when restoring, ask isWhole() in the end.
   [[nodiscard]] bool isGood() const noexcept { return is_good_; }
   /// Everything fitted and nothing is left over.
@@ -43,7 +43,8 @@ class StateArchive {
   [[nodiscard]] std::size_t size() const noexcept { return at_; }
 
  private:
-  StateArchive(std::byte* to, const std::byte* from, std::size_t size) noexcept : to_(to), from_(from), size_(size) {}
+  StateArchive(std::byte* to, const std::byte* from, std::size_t size, bool is_restoring) noexcept
+      : to_(to), from_(from), size_(size), is_restoring_(is_restoring) {}
 
   void bytes(void* member, std::size_t count) noexcept {
     if (!is_good_ || count > size_ - at_) {
@@ -59,8 +60,16 @@ class StateArchive {
   }
 
   template <class Number>
-  requires std::is_arithmetic_v<Number> || std::is_enum_v<Number>
+  requires std::is_arithmetic_v<Number>
   void visit(Number& number) noexcept { bytes(&number, sizeof number); }
+
+  /// A byte that is neither 0 nor 1 is refused: no flag can have it.
+  void visit(bool& flag) noexcept {
+    auto value = static_cast<std::uint8_t>(flag);
+    visit(value);
+    if (value > 1) return fail();
+    flag = value == 1;
+  }
 
   /// Size, then entries. A size that the vector cannot have is refused.
   template <int kRows, int kMaxRows>
@@ -80,6 +89,7 @@ class StateArchive {
   std::byte* to_;
   const std::byte* from_;
   std::size_t size_;
+  bool is_restoring_;  // a room without bytes has no address either
   std::size_t at_ = 0;
   bool is_good_ = true;
 };
