@@ -77,7 +77,7 @@ TEST_F(BagFiles, ARunIsProvenCompleteAndSoIsACopyOfIt) {
 
   // Nothing that is there is overwritten unless it is asked for, and never what is read.
   using Words = std::vector<std::string>;
-  for (const Words& copy : {Words{"recover", file, path("copy.mcap")}, Words{"merge", path("copy.mcap"), file},
+  for (const Words& copy : {Words{"recover", file, path("copy.mcap")}, Words{"merge", file, path("copy.mcap")},
                             Words{"cut", file, path("copy.mcap"), "--to", "1"}}) {
     Words arguments{"bag"};
     arguments.insert(arguments.end(), copy.begin(), copy.end());
@@ -126,7 +126,7 @@ TEST_F(BagFiles, ACutAndADamagedRecordingAreFoundOutAndRecovered) {
 
 TEST_F(BagFiles, RunsAreMergedAndKeptApart) {
   const std::string one = record("one.mcap"), two = record("two.mcap");
-  const nlohmann::json merged = bench.batonJson({"bag", "merge", path("both.mcap"), one, two, "--json"});
+  const nlohmann::json merged = bench.batonJson({"bag", "merge", one, two, path("both.mcap"), "--json"});
   const mcap::Reader first(one), second(two), both(path("both.mcap"));
   EXPECT_EQ(merged.at("messages"), both.statistics().message_count);
   EXPECT_EQ(both.statistics().message_count, first.statistics().message_count + second.statistics().message_count);

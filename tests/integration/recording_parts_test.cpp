@@ -37,7 +37,7 @@ class RecordingParts : public testing::Test {
     parts = {(folder / "run.mcap").string()};
     for (const fs::path& part : furtherPartsOf(folder / "run.mcap")) parts.push_back(part.string());
     ASSERT_GE(parts.size(), 3U);
-    const Finished merged = bench.baton(Words{"bag", "merge", whole} + parts);
+    const Finished merged = bench.baton(Words{"bag", "merge"} + parts + Words{whole});
     ASSERT_EQ(merged.exit_code, 0) << merged.err;
   }
   void record(const std::string& name, const std::string& recording) const {

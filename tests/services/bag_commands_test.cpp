@@ -60,11 +60,14 @@ class BagCommands : public testing::Test {
     writer.close();
     return (folder / name).string();
   }
+  void parse(std::vector<std::string> words) {
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    bag.parse(words);
+  }
   Json run(std::vector<std::string> words) {
     words.emplace_back("--json");
-    std::reverse(words.begin(), words.end());  // as CLI11 wants them
     testing::internal::CaptureStdout();
-    bag.parse(words);
+    parse(words);
     return Json::parse(testing::internal::GetCapturedStdout());
   }
   [[nodiscard]] std::string path(const std::string& name) const { return (folder / name).string(); }
@@ -82,10 +85,20 @@ TEST_F(BagCommands, CutCountsWhatWasRecordedAndNotWhatIsRepeated) {
   EXPECT_EQ(cut.at("left_out"), 1) << "x";
 }
 
+TEST_F(BagCommands, TheFileToMakeComesLast) {
+  const std::string a = write("a.mcap", {{"e", 1, 10, 10}}, 0);
+  const std::uintmax_t size = std::filesystem::file_size(a);
+  EXPECT_THROW(parse({"merge", a, "--overwrite"}), UsageError);
+  EXPECT_THROW(parse({"merge", path("absent.mcap"), a, "--overwrite"}), UnavailableError);
+  EXPECT_THROW(parse({"cut", a, "--overwrite"}), UsageError);
+  EXPECT_THROW(parse({"cut", path("absent.mcap"), a, "--topics", "e", "--overwrite"}), UnavailableError);
+  EXPECT_EQ(std::filesystem::file_size(a), size);
+}
+
 TEST_F(BagCommands, MergeHasEverythingThatAFileRepeatsOnce) {
   const std::string a = write("a.mcap", {{"e", 1, 10, 10}, {"x", 1, 12, 12}}, 0);
   const std::string c = write("c.mcap", {{"e", 1, 30, 10}, {"e", 2, 30, 20}, {"e", 3, 31, 31}}, 2);
-  EXPECT_EQ(run({"merge", path("out.mcap"), a, c}).at("messages"), 4);
+  EXPECT_EQ(run({"merge", a, c, path("out.mcap")}).at("messages"), 4);
   std::vector<std::uint32_t> sequences;
   mcap::Reader(path("out.mcap")).forEachMessage({.topics = {"e"}}, [&](const mcap::MessageView& message) {
     sequences.push_back(message.sequence);

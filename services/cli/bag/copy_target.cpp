@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -16,6 +17,13 @@ void addTarget(CLI::App& command, CopyTarget& target) {
 
 void addOverwrite(CLI::App& command, CopyTarget& target) {
   command.add_flag("--overwrite", target.overwrite, "replace OUT if it is there");
+}
+
+std::string takeLast(std::vector<std::string>& given) {
+  if (given.size() < 2) throw UsageError("expected recordings and then the file to make, found " + given.front());
+  std::string file = std::move(given.back());
+  given.pop_back();
+  return file;
 }
 
 mcap::WriterOptions optionsFor(const CopyTarget& target, const std::vector<std::string>& inputs) {

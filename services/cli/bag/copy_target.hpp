@@ -20,6 +20,10 @@ void addTarget(CLI::App& command, CopyTarget& target);
 /// Without its name.
 void addOverwrite(CLI::App& command, CopyTarget& target);
 
+/// Of recordings and then the file to make, the file; `given` keeps the recordings. Throws UsageError when there is
+/// only one name.
+[[nodiscard]] std::string takeLast(std::vector<std::string>& given);
+
 /// How the file is written. Throws UsageError when it is one of those that are read, and
 /// UnavailableError when it is there and is not to be replaced.
 [[nodiscard]] mcap::WriterOptions optionsFor(const CopyTarget& target, const std::vector<std::string>& inputs);

@@ -108,10 +108,7 @@ Copied copyMessages(const CutRequest& request, const mcap::JoinedReader& reader,
 }
 
 ExitCode cut(CutRequest& request) {
-  std::vector<std::string>& given = request.what.recording.given;
-  if (given.size() < 2) throw UsageError("expected recordings and then the file to make, found " + given.front());
-  request.out.file = given.back();
-  given.pop_back();
+  request.out.file = takeLast(request.what.recording.given);
   if (request.what.range.isAll() && request.what.topics.empty()) {
     throw UsageError("expected what to keep: a range (--from, --to-step, ...) or --topics");
   }

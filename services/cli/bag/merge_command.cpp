@@ -23,8 +23,8 @@ namespace baton {
 namespace {
 
 struct MergeRequest {
+  std::vector<std::string> given;  // recordings, and last the file to make
   CopyTarget out;
-  std::vector<std::string> in;
   bool json = false;
 };
 
@@ -167,8 +167,9 @@ void copyMessages(std::vector<Source>& sources, mcap::Copier& copy) {
   }
 }
 
-ExitCode merge(const MergeRequest& request) {
-  const std::vector<std::string> files = filesOf({.given = request.in});
+ExitCode merge(MergeRequest& request) {
+  request.out.file = takeLast(request.given);
+  const std::vector<std::string> files = filesOf({.given = request.given});
   std::vector<Source> sources = openSources(files);
   mcap::Copier copy(request.out.file, optionsFor(request.out, files));
   copyExtras(sources, copy);
@@ -194,8 +195,9 @@ void addBagMerge(CLI::App& bag, ExitCode& exit_code) {
       "Exit codes: 0 done; 1 OUT could not be written; 2 damaged or not a recording (`bag recover` makes a sound "
       "one);\n"
       "3 a file cannot be opened, or OUT is there already or cannot be made.");
-  addTarget(*command, request->out);
-  command->add_option("in", request->in, "recordings (MCAP), or folders of them")->required();
+  command->add_option("files", request->given, "recordings (MCAP) or folders of them, and then the recording to make")
+      ->required();
+  addOverwrite(*command, request->out);
   command->add_flag("--json", request->json, "as a JSON object");
   command->callback([request, &exit_code] { exit_code = merge(*request); });
 }
