@@ -64,6 +64,26 @@ std::function<void(SmallRecording&)> commands(const std::vector<std::uint64_t>& 
   };
 }
 
+TEST_F(BagDiff, ABranchIsComparedFromWhereItBegins) {
+  const auto origin = commands({0, 1, 2, 3, 4, 5}), branch = commands({3, 4, 5}, 9.0, 5);
+  const RecordingDiff all = diff(origin, branch);
+  EXPECT_FALSE(all.isSame());
+  EXPECT_EQ(all.laterBegin(), 3U);
+  const RecordingDiff common = diff(origin, branch, {.from_step = 3, .to_step = 4});
+  EXPECT_TRUE(common.isSame());
+  EXPECT_EQ(common.laterBegin(), std::nullopt);
+  EXPECT_EQ(common.streams.at({"joint_command", "force"}).compared, 2U);
+  const RecordingDiff late = diff(origin, branch, {.from_step = 4});
+  EXPECT_EQ(late.streams.at({"joint_command", "force"}).different, 1U);
+  EXPECT_EQ(late.streams.at({"joint_command", "force"}).only_a, 0U);
+}
+
+TEST_F(BagDiff, StepsThatARecordingDoesNotHaveAreNotTheSame) {
+  for (const DiffRequest& request : {DiffRequest{.from_step = 6}, DiffRequest{.to_step = 2}}) {
+    EXPECT_THROW((void)diff(commands({0, 1, 2, 3, 4, 5}), commands({3, 4, 5}), request), UsageError);
+  }
+}
+
 TEST_F(BagDiff, TheSameMessagesAreTheSameWhateverTheirOrderAndTheirWriters) {
   const auto a = [](SmallRecording& out) {
     for (std::uint64_t step = 0; step < 50; ++step) {

@@ -53,6 +53,10 @@ void printText(const DiffRequest& request, const RecordingDiff& diff) {
   if (first) {
     fmt::print("first       {}, {}\n", nameOf(*first), textOf(*diff.streams.at(*first).first));
   }
+  if (const auto later = diff.laterBegin()) {
+    fmt::print("begins      A at step {}, B at step {}: --from-step {} compares what both have\n", *diff.first_step[0],
+               *diff.first_step[1], *later);
+  }
   if (!diff.left_out.empty()) {
     fmt::print("left out    {}\n", escaped(fmt::format("{}", fmt::join(diff.left_out, ", "))));
   }
@@ -87,7 +91,9 @@ nlohmann::ordered_json toJson(const DiffRequest& request, const RecordingDiff& d
   nlohmann::ordered_json json{{"a", request.a.string()},   {"b", request.b.string()},
                               {"same", diff.isSame()},     {"first", nullptr},
                               {"left_out", diff.left_out}, {"resets_before", diff.resets_before},
-                              {"streams", streams}};
+                              {"first_step", nullptr},     {"streams", streams}};
+  const auto& [a, b] = diff.first_step;
+  if (a && b) json["first_step"] = {*a, *b};
   if (const auto first = diff.firstDifferent()) json["first"] = {{"topic", first->first}, {"service", first->second}};
   return json;
 }
@@ -151,6 +157,8 @@ void addBagDiff(CLI::App& bag, ExitCode& exit_code) {
       ->add_option("--tolerance", request->tolerances,
                    "how far numbers may be apart, in their unit: everywhere, or as field=1e-9, topic.field=1e-9")
       ->delimiter(',');
+  command->add_option("--from-step", request->from_step, "of messages that have a step only those from this one on");
+  command->add_option("--to-step", request->to_step, "and up to this one");
   command->add_flag("--all-takes", request->all_takes, "the takes before a reset too");
   command->add_flag("--json", wish->json, "as a JSON object");
   command->callback([wish, &exit_code] { exit_code = diff(*wish); });

@@ -70,7 +70,10 @@ bool isOfTheLoop(const std::string& topic) { return std::ranges::count(kLoopTopi
 class Differ {
  public:
   explicit Differ(const DiffRequest& request)
-      : rules_(request.ignored, request.tolerances),
+      : from_step_(request.from_step),
+        to_step_(request.to_step),
+        names_{request.a.string(), request.b.string()},
+        rules_(request.ignored, request.tolerances),
         sides_{Side(request.a, diff_.warnings), Side(request.b, diff_.warnings)} {
     choose(request);
   }
@@ -90,6 +93,10 @@ class Differ {
     for (auto& [key, stream] : streams_) {
       while (!stream.waiting.empty()) dropWaiting(stream);
       diff_.streams[key] = std::move(stream.result);
+    }
+    for (std::size_t side = 0; side < 2; ++side) {
+      if ((from_step_ == 0 && !to_step_) || diff_.first_step[side]) continue;
+      throw UsageError("--from-step, --to-step: expected steps of both recordings, found none in " + names_[side]);
     }
     return std::move(diff_);
   }
@@ -166,6 +173,8 @@ class Differ {
     Stream& stream = *file.streams.at(message.channel->id);
     const TypedPayload payload{file.types.typeOf(message), message.data};
     const Position at = next(stream, side, stepOf(payload));
+    if (at.step && (*at.step < from_step_ || *at.step > to_step_.value_or(UINT64_MAX))) return;
+    if (at.step) diff_.first_step[side] = std::min(*at.step, diff_.first_step[side].value_or(*at.step));
     const std::size_t other = 1 - side;
     if (!stream.waiting.empty() && stream.side == other) {
       while (!stream.waiting.empty() && stream.waiting.front().at < at) dropWaiting(stream);
@@ -218,6 +227,9 @@ class Differ {
     stream.result.first = {at, log_time_ns, std::move(what)};
   }
 
+  std::uint64_t from_step_;
+  std::optional<std::uint64_t> to_step_;
+  std::array<std::string, 2> names_;
   RecordingDiff diff_;
   RuleSet rules_;
   std::array<Side, 2> sides_;
@@ -228,6 +240,11 @@ class Differ {
 
 bool RecordingDiff::isSame() const {
   return std::ranges::all_of(streams, [](const auto& entry) { return entry.second.isSame(); });
+}
+
+std::optional<std::uint64_t> RecordingDiff::laterBegin() const {
+  const auto& [a, b] = first_step;
+  return a && b && a != b ? std::optional(std::max(*a, *b)) : std::nullopt;
 }
 
 std::optional<StreamKey> RecordingDiff::firstDifferent() const {

@@ -27,10 +27,12 @@ namespace baton {
 struct DiffRequest {
   mcap::FileList a{};
   mcap::FileList b{};
-  std::vector<std::string> topics{};      // empty: those of the control loop; without any, all but *_status
-  std::vector<std::string> ignored{};     // as RuleSet
-  std::vector<std::string> tolerances{};  // as RuleSet
-  bool all_takes = false;                 // those before a reset too
+  std::vector<std::string> topics{};       // empty: those of the control loop; without any, all but *_status
+  std::vector<std::string> ignored{};      // as RuleSet
+  std::vector<std::string> tolerances{};   // as RuleSet
+  bool all_takes = false;                  // those before a reset too
+  std::uint64_t from_step = 0;             // of messages that have one, only those from here on
+  std::optional<std::uint64_t> to_step{};  // and up to here
 };
 
 /// Where a sample stands among those of its stream.
@@ -62,14 +64,17 @@ struct RecordingDiff {
   std::map<StreamKey, StreamDiff> streams;
   std::vector<std::string> left_out;             // topics of either file
   std::array<std::uint32_t, 2> resets_before{};  // of A and B: how often the run was reset before what is compared
+  std::array<std::optional<std::uint64_t>, 2> first_step{};  // of A and B, in what is compared
   std::vector<std::string> warnings;
   [[nodiscard]] bool isSame() const;
+  /// The first step that both have, where one begins later, as a branch does.
+  [[nodiscard]] std::optional<std::uint64_t> laterBegin() const;
   /// The stream that differs first: by step, then by log time. Nothing when all is the same.
   [[nodiscard]] std::optional<StreamKey> firstDifferent() const;
 };
 
 /// Throws UsageError for a file that cannot be read whole, for topics and rules that are about nothing in the two, and
-/// when there is nothing to compare; UnavailableError for a file that cannot be opened.
+/// when there is nothing to compare, in the steps asked for; UnavailableError for a file that cannot be opened.
 /// @param progress  told how much of both has been read, 0 to 1.
 [[nodiscard]] RecordingDiff diffRecordings(const DiffRequest& request, const std::function<void(double)>& progress);
 
