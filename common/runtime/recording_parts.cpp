@@ -74,7 +74,8 @@ fs::path claimRecording(const std::string& option, const std::string& out, bool 
   }
   if (fs::exists(path)) there.insert(there.begin(), path);
   if (!there.empty() && !overwrite) {
-    throw UsageError(option + " " + there.front().string() + " exists: choose another name or give --overwrite");
+    throw UnavailableError(option + " " + there.front().string() +
+                           " is there already: choose another name, or give --overwrite");
   }
   for (const fs::path& file : there) fs::remove(file);
   return path;

@@ -14,9 +14,9 @@ namespace baton {
 [[nodiscard]] std::vector<std::filesystem::path> furtherPartsOf(const std::filesystem::path& recording);
 
 /// The absolute path of a recording that is to be made where a person says. With `overwrite` what is there of an
-/// earlier one is removed: the file and, when it is to be split, its other parts. Throws UsageError, with the name of
-/// the option that gave the path, when that cannot be made, something is in the way, or it is there and may not be
-/// replaced.
+/// earlier one is removed: the file and, when it is to be split, its other parts. Throws, with the name of the option
+/// that gave the path, UsageError when it cannot be made or something else is in the way, and UnavailableError when it
+/// is there and may not be replaced.
 [[nodiscard]] std::filesystem::path claimRecording(const std::string& option, const std::string& out, bool is_split,
                                                    bool overwrite);
 

@@ -264,7 +264,7 @@ TEST(BagExport, WritesATableForEachTopicAndNothingOverAnother) {
 
   std::ofstream(out + "/plain.csv") << "mine";
   const Finished again = bench.baton({"bag", "export", file, "--csv", "--out", out});
-  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_EQ(again.exit_code, 3);
   EXPECT_NE(again.err.find("--overwrite"), std::string::npos) << again.err;
   EXPECT_EQ(contentOf(out + "/plain.csv"), "mine");
   ASSERT_EQ(bench.baton({"bag", "export", file, "--csv", "--out", out, "--overwrite"}).exit_code, 0);

@@ -164,10 +164,10 @@ TEST(Record, PartsFollowEachOtherAndTheLastOneVouchesForAll) {
   // Again under the same name: what is left of the first is in the way, unless it may go.
   const std::string scenario = (run.bench.folder() / "short.yaml").string();
   const Finished refused = run.bench.baton({"run", scenario, "--out", run.file.string()});
-  EXPECT_EQ(refused.exit_code, 2) << refused.err;
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;
   fs::remove(run.file);
   const Finished still = run.bench.baton({"run", scenario, "--out", run.file.string()});
-  EXPECT_EQ(still.exit_code, 2);
+  EXPECT_EQ(still.exit_code, 3);
   EXPECT_NE(still.err.find("run_0001.mcap"), std::string::npos) << still.err;
   // What only has the name of a part is somebody else's.
   const fs::path other = run.bench.write("run_2024.mcap", "precious");

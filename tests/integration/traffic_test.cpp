@@ -14,10 +14,13 @@
 
 #include "dds/endpoint.hpp"
 #include "dds/interfaces.hpp"
+#include "dds/typed.hpp"
 #include "mcap/lookup.hpp"
 #include "mcap/reader.hpp"
 #include "support/file_size_limit.hpp"
+#include "support/live_run.hpp"
 #include "support/processes.hpp"
+#include "support/recordings.hpp"
 #include "support/short_contact.hpp"
 
 namespace baton::test {
@@ -397,7 +400,7 @@ TEST(Traffic, WhatIsWrongIsSaidAtOnce) {
   Bench bench;
   const std::string there = bench.write("there.mcap", "precious");
   const Finished exists = bench.baton({"record", "traffic", there});
-  EXPECT_EQ(exists.exit_code, 2) << exists.err;
+  EXPECT_EQ(exists.exit_code, 3) << exists.err;
   EXPECT_NE(exists.err.find("--overwrite"), std::string::npos) << exists.err;
   EXPECT_EQ(fs::file_size(there), 8U);
   const std::string file = (bench.folder() / "new.mcap").string();
@@ -438,6 +441,23 @@ TEST(Traffic, ARunThatIsRecordedFromOutsideIsTheSameRun) {
   const Finished verified = bench.baton({"bag", "verify", recorder.file().string()});
   EXPECT_EQ(verified.out.find("vouch for"), std::string::npos) << verified.out;
   EXPECT_EQ(verified.out.find("proven"), std::string::npos) << verified.out;
+}
+
+TEST(Traffic, OfARunUnderWayTheLoopIsRecordedFromWhereItIs) {
+  Bench bench;
+  const LiveRun run(bench, endlessContact());
+  run.waitForStep(200);
+  Recorder recorder(bench, {"--interface", "lo", "--topics", "plant_state,reference", "--max-messages", "100"});
+  const Json result = recorder.result();
+  EXPECT_EQ(result.at("exit_code"), 0) << result;
+  EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
+  const mcap::Reader reader(recorder.file());
+  EXPECT_EQ(mcap::topicNames(reader), (std::vector<std::string>{"plant_state", "reference"}));
+  const auto streams = readStreams(recorder.file().string());
+  const auto states = decodeStream<msg::PlantState>(streams.at({"plant_state", "plant"}));
+  ASSERT_FALSE(states.empty());
+  EXPECT_GE(states.front().step(), 200U);
+  for (std::size_t i = 1; i < states.size(); ++i) EXPECT_EQ(states[i].step(), states[i - 1].step() + 1) << i;
 }
 
 TEST(Traffic, AnotherVendorsTalkerInItsDefaultConfigurationIsRecordedByDefault) {

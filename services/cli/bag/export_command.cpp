@@ -94,7 +94,7 @@ class Export {
     }
     for (const auto& [key, path] : paths_) {
       if (!request_.overwrite && std::filesystem::exists(path)) {
-        throw UsageError(path.string() + " is there already; --overwrite replaces it");
+        throw UnavailableError(path.string() + " is there already: choose another folder, or give --overwrite");
       }
     }
     for (auto& [key, table] : tables_) {
@@ -182,7 +182,7 @@ void addBagExport(CLI::App& bag, ExitCode& exit_code) {
       "has\n"
       "its name only when it is complete.\n"
       "Exit codes: 0 all was exported, 1 some of it is cut, damaged or none of its type and the rest was exported,\n"
-      "2 wrong input, not a recording, or a file that is there already, 3 cannot be opened or written.");
+      "2 wrong input or not a recording, 3 cannot be opened or written, or a file is there already.");
   addTopicSelection(*command, request->selection);
   addRange(*command, request->selection.range);
   CLI::Option* csv = command->add_flag("--csv", request->csv, "tables, TOPIC.csv");

@@ -43,7 +43,7 @@ bool parseTrafficOptions(int argc, const char* const* argv, TrafficOptions& opti
       "word on what was sent before the first and after the last sample, so `bag verify` says complete, as received.\n"
       "What is disposed of is not recorded; a type is kept with the IDL of Baton's own types, else by its name.\n"
       "Exit codes: 0 recorded without a loss; 1 samples are missing, a writer could not be read, nothing came, or the\n"
-      "disk is full; 2 wrong input, or FILE exists (--overwrite); 3 the file or DDS is not available; 130 a signal\n"
+      "disk is full; 2 wrong input; 3 FILE is there already, or the file or DDS is not available; 130 a signal\n"
       "came before --duration or --max-messages was reached. Without those two, a signal is how it ends: 0 or 1.");
   app.add_option("file", options.out, "recording to make (MCAP)")->required()->type_name("FILE");
   addDomain(app, options.domain)->envname("BATON_DOMAIN");
