@@ -24,6 +24,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 using ull = unsigned long long;
 
+/// Of a service without a status, after CellClient::kStatusPatience.
+constexpr const char* kSilent = "said nothing for 5 s: stopped, gone, or without a processor";
+
 void status(const CellTarget& target) {
   CellClient client(CellClient::find(target.domain, target.cell));
   const Scenario scenario = loadScenario(keptScenario(client.info()), keptRobot(client.info()));
@@ -57,6 +60,11 @@ void status(const CellTarget& target) {
                                   {"pid", service.pid()},
                                   {"text", service.text().c_str()}});
     }
+    for (const std::string& name : expected) {
+      if (services.contains(name)) continue;
+      json["services"].push_back(
+          {{"name", name}, {"role", nullptr}, {"state", "silent"}, {"pid", nullptr}, {"text", kSilent}});
+    }
     std::cout << toText(json) << '\n';
     return;
   }
@@ -73,6 +81,9 @@ void status(const CellTarget& target) {
   for (const auto& [name, service] : services) {
     std::printf("  %-16s %-12s %-9s pid %-8d %s\n", name.c_str(), service.role().c_str(), toString(service.state()),
                 static_cast<int>(service.pid()), service.text().c_str());
+  }
+  for (const std::string& name : expected) {
+    if (!services.contains(name)) std::printf("  %-16s %-12s %-9s %s\n", name.c_str(), "", "silent", kSilent);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "dds/typed.hpp"
 #include "mcap/reader.hpp"
@@ -131,6 +132,23 @@ TEST_P(StoppedProcess, IsContinuedByDownAndTheRunEndsInOrder) {
 INSTANTIATE_TEST_SUITE_P(Each, StoppedProcess,
                          ::testing::Values("supervisor", "plant", "recorder", "environment", "tracking"),
                          [](const auto& service) { return service.param; });
+
+TEST(Fault, AServiceThatSaysNothingIsInTheStatusAsSilent) {
+  const Bench bench;
+  const LiveRun run(bench, endlessContact(), {"--paused"});
+  const int pid = run.pidOf("environment");
+  ASSERT_GT(pid, 0);
+  ASSERT_EQ(kill(pid, SIGSTOP), 0);
+  std::map<std::string, std::string> states;
+  const nlohmann::json status = bench.batonJson({"status", "--json"});
+  for (const auto& service : status.at("services")) states[service.at("name")] = service.at("state");
+  EXPECT_EQ(states["environment"], "silent") << status;
+  EXPECT_EQ(states["plant"], "ready") << status;
+  const Finished text = bench.baton({"status"});
+  EXPECT_NE(text.out.find("said nothing for 5 s"), std::string::npos) << text.out;
+  ASSERT_EQ(kill(pid, SIGCONT), 0);
+  EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
+}
 
 TEST(Fault, AHolderThatDiesLosesTheBatonToTheFallback) {
   const Bench bench;

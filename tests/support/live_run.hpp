@@ -24,7 +24,7 @@ struct LiveRun {
   }
   [[nodiscard]] int pidOf(const std::string& service) const {
     for (const auto& one : status.at("services")) {
-      if (one.at("name") == service) return one.at("pid");
+      if (one.at("name") == service && one.at("pid").is_number()) return one.at("pid");
     }
     return -1;
   }
