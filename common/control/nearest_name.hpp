@@ -25,14 +25,16 @@ namespace baton {
   return row.back();
 }
 
-/// "; did you mean 'nearest'?"; empty when none is near.
+/// "; did you mean 'nearest'?"; empty when none is near. The beginning of a name is nearer than any other word.
 [[nodiscard]] inline std::string didYouMean(const std::string& found, const std::vector<std::string>& known) {
+  const auto distance = [&](const std::string& name) {
+    return found.size() > 1 && name.starts_with(found) ? 0 : editDistance(found, name);
+  };
   const auto nearest = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
-    return editDistance(found, a) < editDistance(found, b);
+    return distance(a) < distance(b);
   });
   // Beyond half the word a suggestion would be a guess.
-  const bool is_near =
-      nearest != known.end() && editDistance(found, *nearest) <= std::max<std::size_t>(1, nearest->size() / 2);
+  const bool is_near = nearest != known.end() && distance(*nearest) <= std::max<std::size_t>(1, nearest->size() / 2);
   return is_near ? "; did you mean '" + *nearest + "'?" : "";
 }
 

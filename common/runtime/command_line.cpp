@@ -1,5 +1,7 @@
 #include "runtime/command_line.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -45,6 +47,32 @@ void guardNumbers(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands({})) guardNumbers(*command);
 }
 
+std::vector<std::string> subcommandsOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+/// How far a line names commands.
+struct Reached {
+  const CLI::App* command;
+  std::string words;      // each with a space in front
+  std::string next_word;  // empty at the end of the line
+};
+
+Reached reachedBy(const CLI::App& app, int argc, const char* const* argv) {
+  Reached reached{.command = &app, .words = "", .next_word = ""};
+  for (int i = 1; i < argc; ++i) {
+    reached.next_word = argv[i];
+    const std::vector<const CLI::App*> all = reached.command->get_subcommands({});
+    const auto named =
+        std::find_if(all.begin(), all.end(), [&](const CLI::App* one) { return one->get_name() == reached.next_word; });
+    if (named == all.end()) return reached;
+    reached = {.command = *named, .words = reached.words + " " + reached.next_word, .next_word = ""};
+  }
+  return reached;
+}
+
 }  // namespace
 
 bool parseCommandLine(CLI::App& app, int argc, const char* const* argv) {
@@ -60,21 +88,25 @@ bool parseCommandLine(CLI::App& app, int argc, const char* const* argv) {
   return true;
 }
 
-ExitCode runCommand(CLI::App& app, int argc, const char* const* argv) {
+void runCommand(CLI::App& app, int argc, const char* const* argv) {
   guardNumbers(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {  // the help or the version
+      app.exit(error);
+      return;
+    }
+    const Reached reached = reachedBy(app, argc, argv);
     // CLI11 would ask for a subcommand without naming the word that is none.
-    const std::string word = argc > 1 ? argv[1] : "";
-    std::vector<std::string> known;
-    for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
-    const bool is_command = std::find(known.begin(), known.end(), word) != known.end();
-    const bool lacks_command = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && !is_command;
-    if (lacks_command && !word.empty()) throw UsageError(unknownName("command", word, known));
-    return app.exit(error) == 0 ? ExitCode::kOk : ExitCode::kUsage;
+    const std::vector<std::string> known = subcommandsOf(*reached.command);
+    if (!known.empty() && !reached.next_word.empty() && !reached.next_word.starts_with('-')) {
+      throw UsageError(
+          unknownName(reached.words.empty() ? "command" : "command of" + reached.words, reached.next_word, known));
+    }
+    const std::string about = reached.words.empty() ? "" : reached.words.substr(1) + ": ";
+    throw UsageError(about + error.what() + "; see `" + app.get_name() + reached.words + " --help`");
   }
-  return ExitCode::kOk;
 }
 
 CLI::Option* addCell(CLI::App& app, std::string& cell) {
@@ -90,7 +122,7 @@ CLI::Option* addCell(CLI::App& app, std::string& cell) {
 }
 
 CLI::Option* addDomain(CLI::App& app, int& domain) {
-  return app.add_option("--domain", domain, "DDS domain")->check(CLI::Range(0, 232))->capture_default_str();
+  return app.add_option("--domain", domain, "DDS domain")->check(wholeBetween(0, 232))->capture_default_str();
 }
 
 CLI::Option* addTransport(CLI::App& app, dds::Transport& transport) {
@@ -135,6 +167,24 @@ CLI::Validator atLeastOne() {
           "COUNT"};
 }
 
+CLI::Validator wholeBetween(std::int64_t low, std::int64_t high) {
+  return {[=](const std::string& text) -> std::string {
+            const auto number = numberIn<std::int64_t>(text);
+            const bool is_right = number && *number >= low && *number <= high;
+            return is_right ? "" : fmt::format("expected a whole number from {} to {}, found '{}'", low, high, text);
+          },
+          fmt::format("{} to {}", low, high)};
+}
+
+CLI::Validator between(double low, double high) {
+  return {[=](const std::string& text) -> std::string {
+            const auto number = numberIn<double>(text);
+            const bool is_right = number && *number >= low && *number <= high;
+            return is_right ? "" : fmt::format("expected a number from {:g} to {:g}, found '{}'", low, high, text);
+          },
+          fmt::format("{:g} to {:g}", low, high)};
+}
+
 void addScheduling(CLI::App& app, Scheduling& scheduling) {
   const auto complaint = [](const std::string& text) -> std::string {
     try {
@@ -145,7 +195,7 @@ void addScheduling(CLI::App& app, Scheduling& scheduling) {
     }
   };
   app.add_option("--fifo", scheduling.fifo_priority, "SCHED_FIFO priority of the loop's processes, where allowed")
-      ->check(CLI::Range(1, 99));
+      ->check(wholeBetween(1, 99));
   app.add_option("--cpus", scheduling.cpus, "cores that the loop's processes stay on: 0,2")
       ->check(CLI::Validator(complaint, "LIST"));
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 
 #include "base/error.hpp"
@@ -14,9 +15,9 @@ namespace baton {
 /// Parses. Returns false after printing the help that was asked for. Throws UsageError for a line that is wrong.
 [[nodiscard]] bool parseCommandLine(CLI::App& app, int argc, const char* const* argv);
 
-/// Parses a line that begins with a command, which runs as it is met. Returns kOk, or kUsage after saying what is wrong
-/// with the line. Throws UsageError for a word that is no command.
-[[nodiscard]] ExitCode runCommand(CLI::App& app, int argc, const char* const* argv);
+/// Parses a line that begins with a command, which runs as it is met, or prints the help that was asked for. Throws
+/// UsageError for a line that is wrong: in which command, and what.
+void runCommand(CLI::App& app, int argc, const char* const* argv);
 
 /// --cell: refuses a name that is not 1 to 31 of A-Z a-z 0-9 _ -, as it becomes part of a file's name and of a DDS
 /// partition.
@@ -33,6 +34,10 @@ CLI::Option* addClock(CLI::App& app, dds::WallClock& clock);
 [[nodiscard]] CLI::Validator notNegative();
 /// For counts: whole numbers from 1 on.
 [[nodiscard]] CLI::Validator atLeastOne();
+/// For whole numbers, both ends included.
+[[nodiscard]] CLI::Validator wholeBetween(std::int64_t low, std::int64_t high);
+/// For numbers, both ends included.
+[[nodiscard]] CLI::Validator between(double low, double high);
 /// --fifo and --cpus.
 void addScheduling(CLI::App& app, Scheduling& scheduling);
 

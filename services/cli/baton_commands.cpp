@@ -13,6 +13,7 @@
 #include "latest_by_name.hpp"
 #include "messages/state_names.hpp"
 #include "run_commands.hpp"
+#include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/swap_report.hpp"
@@ -308,7 +309,7 @@ void addBatonCommands(CLI::App& app, ExitCode& exit_code) {
   command->add_option("--at-time", wish->at_s, "the same in seconds of the run")->excludes(at);
   CLI::Option* blend =
       command->add_option("--blend", wish->blend_ms, "ms over which the difference fades (default: the scenario's)")
-          ->check(CLI::Range(0.0, kMaxBlend_s * 1e3));
+          ->check(between(0.0, kMaxBlend_s * 1e3));
   command->add_flag("--hard", wish->hard, "without help: no blend, and the law starts anew instead of taking over")
       ->excludes(blend);
   command->add_flag("--force", wish->force, "even if the forecast jump is above the scenario's limit");

@@ -252,7 +252,7 @@ void addFiguresCommand(CLI::App& app, ExitCode& exit_code) {
   command->add_option("--out", request->out, "folder for the page, the drawings and the recordings")
       ->capture_default_str();
   command->add_option("--jobs", request->batch.jobs, "runs at the same time")
-      ->check(CLI::Range(1, 64))
+      ->check(wholeBetween(1, 64))
       ->capture_default_str();
   command->add_flag("--fresh", request->batch.fresh, "run everything again");
   addDomain(*command, request->batch.domain)->envname("BATON_DOMAIN");

@@ -204,7 +204,7 @@ void addKillsCommand(CLI::App& app, ExitCode& exit_code) {
       "Exit codes: 0 all of it held every time, 1 it did not; what did not is told and kept.");
   command->add_option("scenario", request->scenario, "another scenario: lockstep, a wall, a planned handover")
       ->capture_default_str();
-  command->add_option("--runs", request->runs, "how many")->check(CLI::Range(1, 100'000))->capture_default_str();
+  command->add_option("--runs", request->runs, "how many")->check(wholeBetween(1, 100'000))->capture_default_str();
   command->add_option("--seed", request->seed, "of the list of kills")->capture_default_str();
   command->add_option("--out", request->out, "folder for all recordings (default: those of failed runs are kept)");
   addCellOptions(*command, request->run.cell, request->run.domain);

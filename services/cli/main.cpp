@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", "baton " BATON_VERSION " (" BATON_COMPILER ", " BATON_FLAGS ")");
     app.require_subcommand(1);
     baton::addCommands(app, exit_code);
-    const baton::ExitCode parsed = baton::runCommand(app, argc, argv);
-    return parsed == baton::ExitCode::kOk ? exit_code : parsed;
+    baton::runCommand(app, argc, argv);
+    return exit_code;
   });
 }

@@ -72,7 +72,7 @@ void addRunOptions(CLI::App& command, RunRequest& request) {
                    "take requests (swap, param, sim, record, controller) from anybody on this machine");
   command
       .add_option("--restarts", request.restarts, "how often a part that dies is started again; not plant and recorder")
-      ->check(CLI::Range(0, 1000));
+      ->check(wholeBetween(0, 1000));
 }
 
 void tell(const nlohmann::ordered_json& result, bool json) {
@@ -279,7 +279,7 @@ void addRunCommands(CLI::App& app, ExitCode& exit_code) {
   CLI::App* logs_command =
       app.add_subcommand("logs", "the last lines of a service's log, or of all; of the newest run when none is up");
   logs_command->add_option("service", *service, "plant, recorder, supervisor, a controller's name, ...");
-  logs_command->add_option("--lines", *lines, "how many")->check(CLI::Range(1, 1'000'000))->capture_default_str();
+  logs_command->add_option("--lines", *lines, "how many")->check(wholeBetween(1, 1'000'000))->capture_default_str();
   addCellOptions(*logs_command, request->cell, request->domain);
   logs_command->callback([=] { logs(request->cell, request->domain, *service, *lines); });
 }

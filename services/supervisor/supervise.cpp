@@ -32,7 +32,7 @@ ExitCode supervise(int argc, char** argv) {
   app.add_flag("--no-recording", no_recording, "without a recorder");
   app.add_option("--restarts", deployment.restarts,
                  "how often a part that dies is started again; not plant and recorder")
-      ->check(CLI::Range(0, 1000));
+      ->check(wholeBetween(0, 1000));
   std::string checkpoint;
   bool starts_paused = false, record_later = false, is_open = false;
   Scheduling scheduling;

@@ -15,7 +15,8 @@ struct Numbers {
   double real = 7.0;
   std::optional<double> maybe_real;
 
-  ExitCode parse(std::vector<const char*> words) {
+  /// Whether they are taken.
+  bool parse(std::vector<const char*> words) {
     CLI::App app("test");
     CLI::App* command = app.add_subcommand("do", "");
     command->add_option("--whole", whole, "");
@@ -25,13 +26,18 @@ struct Numbers {
     command->add_option("--real", real, "");
     command->add_option("--maybe-real", maybe_real, "");
     words.insert(words.begin(), {"baton", "do"});
-    return runCommand(app, static_cast<int>(words.size()), words.data());
+    try {
+      runCommand(app, static_cast<int>(words.size()), words.data());
+    } catch (const UsageError&) {
+      return false;
+    }
+    return true;
   }
 };
 
 TEST(CommandLine, TakesNumbers) {
   Numbers numbers;
-  EXPECT_EQ(numbers.parse({"--whole", "18446744073709551615", "--real", "-1.5e3", "--maybe", "0"}), ExitCode::kOk);
+  EXPECT_TRUE(numbers.parse({"--whole", "18446744073709551615", "--real", "-1.5e3", "--maybe", "0"}));
   EXPECT_EQ(numbers.whole, UINT64_MAX);
   EXPECT_EQ(numbers.maybe, 0U);
   EXPECT_EQ(numbers.real, -1500.0);
@@ -41,7 +47,7 @@ TEST(CommandLine, RefusesWhatIsNoWholeNumber) {
   for (const char* option : {"--whole", "--maybe", "--called"}) {
     for (const char* word : {"-1", "18446744073709551616", "1.5", "1e3", "nan", "", " 1", "0x10", "1x"}) {
       Numbers numbers;
-      EXPECT_EQ(numbers.parse({option, word}), ExitCode::kUsage) << option << " '" << word << "'";
+      EXPECT_FALSE(numbers.parse({option, word})) << option << " '" << word << "'";
       EXPECT_EQ(numbers.whole, 7U) << option << " '" << word << "'";
     }
   }
@@ -51,10 +57,58 @@ TEST(CommandLine, RefusesWhatIsNoFiniteNumber) {
   for (const char* option : {"--real", "--maybe-real"}) {
     for (const char* word : {"nan", "-nan", "inf", "-inf", "1e999", "", "1x"}) {
       Numbers numbers;
-      EXPECT_EQ(numbers.parse({option, word}), ExitCode::kUsage) << option << " '" << word << "'";
+      EXPECT_FALSE(numbers.parse({option, word})) << option << " '" << word << "'";
       EXPECT_EQ(numbers.real, 7.0);
     }
   }
+}
+
+/// What is said of a line of a program with the commands status, swap and bag, which has info and export --out FILE.
+std::string refusalOf(std::vector<const char*> words) {
+  CLI::App app("test");
+  app.name("baton");
+  app.require_subcommand(1);
+  double blend = 0.0;
+  int domain = 0;
+  std::string out;
+  app.add_subcommand("status", "")->add_option("--domain", domain, "")->check(wholeBetween(0, 232));
+  app.add_subcommand("swap", "")->add_option("--blend", blend, "")->check(between(0.0, 10'000.0));
+  CLI::App* bag = app.add_subcommand("bag", "");
+  bag->require_subcommand(1);
+  bag->add_subcommand("info", "");
+  bag->add_subcommand("export", "")->add_option("--out", out, "")->required();
+  words.insert(words.begin(), "baton");
+  try {
+    runCommand(app, static_cast<int>(words.size()), words.data());
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CommandLine, AWordThatIsNoCommandIsNamedWithTheNearestThatIs) {
+  EXPECT_EQ(refusalOf({"stat"}), "unknown command 'stat'; did you mean 'status'? Known: status, swap, bag");
+  EXPECT_EQ(refusalOf({"bag", "inf", "x"}), "unknown command of bag 'inf'; did you mean 'info'? Known: info, export");
+  EXPECT_EQ(refusalOf({"status"}), "");
+}
+
+TEST(CommandLine, ARefusalNamesTheCommandAndItsHelp) {
+  EXPECT_EQ(refusalOf({}), "A subcommand is required; see `baton --help`");
+  EXPECT_EQ(refusalOf({"bag"}), "bag: A subcommand is required; see `baton bag --help`");
+  EXPECT_EQ(refusalOf({"bag", "export"}), "bag export: --out is required; see `baton bag export --help`");
+}
+
+TEST(CommandLine, ANumberOutOfRangeIsToldTheRange) {
+  for (const char* word : {"-1", "233", "1.5", "nan", "", "0x1"}) {
+    EXPECT_EQ(refusalOf({"status", "--domain", word}),
+              "status: --domain: expected a whole number from 0 to 232, found '" + std::string(word) +
+                  "'; see `baton status --help`");
+  }
+  EXPECT_EQ(refusalOf({"status", "--domain", "232"}), "");
+  for (const char* word : {"-0.1", "10001", "inf"}) {
+    EXPECT_NE(refusalOf({"swap", "--blend", word}).find("--blend: expected a "), std::string::npos) << word;
+  }
+  EXPECT_EQ(refusalOf({"swap", "--blend", "1e4"}), "");
 }
 
 TEST(CommandLine, ARateIsOneThatCanBeSeen) {

@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"FlatTip", "[0.55, -0.46, 0.4]", "[0.55, -0.46]", "- {time_s: 0", "a list of 3", "a list of 2"},
         BadInput{"Degrees", "tip_zyz_rad: [pi/5", "tip_zyz_rad: [180", "- {time_s: 2", "from -100 to 100 rad", "'180'"},
         BadInput{"UnitForgotten", "tip_zyz_rad", "tip_zyz", "- {time_s: 2",
-                 "known: time_s, position, tip_m, tip_zyz_rad", "'tip_zyz'"},
+                 "did you mean 'tip_zyz_rad'? Known: time_s, position, tip_m, tip_zyz_rad", "'tip_zyz'"},
         BadInput{"LongRamp", "ramp: 0.2", "ramp: 0.6", "ramp:", "above 0 and up to 0.5", "'0.6'"},
         BadInput{"NoRamp", "ramp: 0.2", "ramp: 0", "ramp:", "above 0 and up to 0.5", "'0'"},
         BadInput{"RampOfQuintic", "trapezoidal", "quintic", "ramp:", "interpolation: trapezoidal", "found another"},
