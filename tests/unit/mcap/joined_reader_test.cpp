@@ -23,7 +23,7 @@ class JoinedReaderTest : public testing::Test {
   /// A file with a channel a topic, in the order of `topics`; the first `repeated` samples are from before.
   std::filesystem::path write(const std::string& name, const std::vector<std::string>& topics,
                               const std::vector<Sample>& samples, std::uint64_t repeated = 0) {
-    const std::filesystem::path path = folder_.file(name);
+    std::filesystem::path path = folder_.file(name);
     Writer writer(path);
     if (repeated > 0) writer.addMetadata(kRepeatedRecord, repeatedRecord(repeated));
     writer.addMetadata("about", {{"file", name}});
