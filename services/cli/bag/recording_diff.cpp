@@ -70,12 +70,10 @@ bool isOfTheLoop(const std::string& topic) { return std::ranges::count(kLoopTopi
 class Differ {
  public:
   explicit Differ(const DiffRequest& request)
-      : from_step_(request.from_step),
-        to_step_(request.to_step),
-        names_{request.a.string(), request.b.string()},
+      : request_(request),
         rules_(request.ignored, request.tolerances),
         sides_{Side(request.a, diff_.warnings), Side(request.b, diff_.warnings)} {
-    choose(request);
+    choose();
   }
 
   RecordingDiff run(const std::function<void(double)>& progress) {
@@ -95,32 +93,33 @@ class Differ {
       diff_.streams[key] = std::move(stream.result);
     }
     for (std::size_t side = 0; side < 2; ++side) {
-      if ((from_step_ == 0 && !to_step_) || diff_.first_step[side]) continue;
-      throw UsageError("--from-step, --to-step: expected steps of both recordings, found none in " + names_[side]);
+      if ((request_.from_step == 0 && !request_.to_step) || diff_.first_step[side]) continue;
+      throw UsageError("--from-step, --to-step: expected steps of both recordings, found none in " +
+                       (side == 0 ? request_.a : request_.b).string());
     }
     return std::move(diff_);
   }
 
  private:
   /// Which topics are compared, with which rules.
-  void choose(const DiffRequest& request) {
+  void choose() {
     std::set<std::string> all;
     for (const Side& side : sides_) {
       for (const std::string& topic : mcap::topicNames(side.reader)) all.insert(topic);
     }
     const std::vector<std::string> names(all.begin(), all.end());
     for (const std::string& topic : names) rules_.meetTopic(topic);
-    for (const std::string& topic : request.topics) {
+    for (const std::string& topic : request_.topics) {
       if (!all.contains(topic)) throw UsageError(escaped(unknownName("topic", topic, names)));
     }
     const bool has_loop = std::ranges::any_of(names, isOfTheLoop);
     const auto isCompared = [&](const std::string& topic) {
       if (rules_.ignoresTopic(topic)) return false;
-      if (!request.topics.empty()) return std::ranges::count(request.topics, topic) > 0;
+      if (!request_.topics.empty()) return std::ranges::count(request_.topics, topic) > 0;
       return has_loop ? isOfTheLoop(topic) : !dds::isStatusTopic(topic);
     };
     for (std::size_t side = 0; side < 2; ++side) {
-      const Take take = request.all_takes ? Take{} : lastTake(sides_[side].reader);
+      const Take take = request_.all_takes ? Take{} : lastTake(sides_[side].reader);
       diff_.resets_before[side] = take.resets;
       openStreams(side, isCompared, take.begin_ns);
     }
@@ -173,7 +172,7 @@ class Differ {
     Stream& stream = *file.streams.at(message.channel->id);
     const TypedPayload payload{file.types.typeOf(message), message.data};
     const Position at = next(stream, side, stepOf(payload));
-    if (at.step && (*at.step < from_step_ || *at.step > to_step_.value_or(UINT64_MAX))) return;
+    if (at.step && (*at.step < request_.from_step || *at.step > request_.to_step.value_or(UINT64_MAX))) return;
     if (at.step) diff_.first_step[side] = std::min(*at.step, diff_.first_step[side].value_or(*at.step));
     const std::size_t other = 1 - side;
     if (!stream.waiting.empty() && stream.side == other) {
@@ -227,9 +226,7 @@ class Differ {
     stream.result.first = {at, log_time_ns, std::move(what)};
   }
 
-  std::uint64_t from_step_;
-  std::optional<std::uint64_t> to_step_;
-  std::array<std::string, 2> names_;
+  const DiffRequest& request_;  // of the caller, who waits for run()
   RecordingDiff diff_;
   RuleSet rules_;
   std::array<Side, 2> sides_;
