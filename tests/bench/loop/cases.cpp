@@ -5,7 +5,7 @@
 
 namespace baton::bench {
 namespace {
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr double kBytesPerKilobyte = 1024.0;
 

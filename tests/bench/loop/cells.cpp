@@ -17,7 +17,7 @@
 
 namespace baton::bench {
 namespace {
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 constexpr double kCrawl_steps_per_s = 1e-3;  // until they are let go they do not get beyond step 0

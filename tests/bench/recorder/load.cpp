@@ -15,7 +15,7 @@
 
 namespace baton::bench {
 namespace {
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 using Stream = std::pair<std::string, std::string>;  // topic, writer
 
 constexpr double kCrawl = 0.05;                           // simulated seconds per second: 100 steps

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMaxSeek_ms = 5.0;
 constexpr double kMinVerify = 300.0;          // MB of file in a second
-constexpr double kMaxGrowth_MB = 8.0;         // of the process, where the file is ten times as large
+constexpr double kMaxSizeGrowth_MB = 8.0;         // of the process, where the file is ten times as large
 constexpr std::uint64_t kBytesASample = 151;  // what three messages of the recording take in the file
 
 std::filesystem::path makeRecording(const std::filesystem::path& folder, const std::string& name, double megabytes) {
@@ -67,7 +67,7 @@ void measureReader(const Plan& plan, const Report& report) {
   const auto [verify_s, verify_MB] = measured({"bag", "verify", file.string()});
   report({"bag verify", megabytes / verify_s, "MB/s", kMinVerify});
   report({"bag verify: memory", verify_MB, "MB"});
-  report({"bag verify: memory beyond that for a tenth", verify_MB - small_MB, "MB", kMaxGrowth_MB, true});
+  report({"bag verify: memory beyond that for a tenth", verify_MB - small_MB, "MB", kMaxSizeGrowth_MB, true});
   const std::string out = disk.file("out.mcap").string();
   const auto [recover_s, recover_MB] = measured({"bag", "recover", file.string(), out, "--overwrite"});
   report({"bag recover", megabytes / recover_s, "MB/s"});

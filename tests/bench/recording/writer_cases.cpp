@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMinMessages = 400e3;   // of 100 B, in a second
 constexpr double kMinMegabytes = 500.0;  // of 10 KiB, in a second
-constexpr double kMaxGrowth_MB = 4.0;    // of the process while a file grows by all that is written
+constexpr double kMaxFileGrowth_MB = 4.0;    // of the process while a file grows by all that is written
 
 /// Numbers as of a robot: four bytes of each eight are noise, the others change slowly. Longer than a chunk, so that no
 /// compressor finds a message again.
@@ -106,7 +106,7 @@ void measureWriter(const Plan& plan, const Report& report) {
       growth_MB = std::max({growth_MB, small.growth_MB, large.growth_MB});
     }
   }
-  report({"write: memory gained over a file", growth_MB, "MB", kMaxGrowth_MB, true});
+  report({"write: memory gained over a file", growth_MB, "MB", kMaxFileGrowth_MB, true});
 
   // As the recorder writes, with each of its choices of recording: {sync: ...}.
   mcap::WriterOptions options;
