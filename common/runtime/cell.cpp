@@ -90,8 +90,8 @@ CellLock::CellLock(const RunInfo& info) : file_(cellFile(info.domain, info.cell)
                            (other ? " by run " + other->run + " (" + other->scenario + ", process " +
                                         std::to_string(other->supervisor_pid) + ")"
                                   : "") +
-                           ": end that run with `baton down --cell " + info.cell +
-                           "`, or choose another cell with --cell");
+                           ": end that run with `baton down --cell " + info.cell + " --domain " +
+                           std::to_string(info.domain) + "`, or choose another cell with --cell");
   }
   const std::string text = asText(info);
   if (ftruncate(descriptor_, 0) != 0 ||
@@ -121,15 +121,17 @@ std::vector<RunInfo> activeRuns() {
 std::string keyFile(const RunInfo& info) { return info.folder + "/key"; }
 
 void makeKeyWhenMissing(const RunInfo& info) {
-  const std::string file = keyFile(info);
+  const std::string file = keyFile(info), draft = file + "." + std::to_string(getpid());
   if (fs::exists(file)) return;
   const std::string text = dds::RunKey::fresh().text() + "\n";
-  const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  const bool is_written =
-      descriptor >= 0 && write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  const int descriptor = open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  bool is_there = descriptor >= 0 && write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  // Whole or not at all; where two begin at once, both have the first one's.
+  is_there = is_there && (link(draft.c_str(), file.c_str()) == 0 || errno == EEXIST);
   const int error = errno;
   if (descriptor >= 0) close(descriptor);
-  if (!is_written) throw UnavailableError("cannot write the run's key, " + file + ": " + std::strerror(error));
+  unlink(draft.c_str());
+  if (!is_there) throw UnavailableError("cannot write the run's key, " + file + ": " + std::strerror(error));
 }
 
 dds::RunKey readKey(const std::string& file) {
@@ -199,11 +201,19 @@ void keepExperiment(const RunInfo& info, const Scenario& scenario) {
 
 fs::path runFolder(const std::string& run) {
   fs::path folder = stateFolder() / "runs" / run;
+  makePrivateFolder(folder);
+  return folder;
+}
+
+fs::path replayFolder(int domain, const std::string& cell, const std::string& run) {
+  return stateFolder() / "replays" / std::to_string(domain) / cell / run;
+}
+
+void makePrivateFolder(const fs::path& folder) {
   makeFolder(folder);
   std::error_code error;
   fs::permissions(folder, fs::perms::owner_all, error);
   if (error) throw UnavailableError("cannot make " + folder.string() + " private: " + error.message());
-  return folder;
 }
 
 }  // namespace baton

@@ -46,8 +46,12 @@ class CellLock {
 /// All runs alive on this machine.
 [[nodiscard]] std::vector<RunInfo> activeRuns();
 
-/// The folder of a run; created when missing.
+/// The folder of a run, its owner's alone; created when missing.
 [[nodiscard]] std::filesystem::path runFolder(const std::string& run);
+/// Where a replay has its key while it lives. Nothing is created.
+[[nodiscard]] std::filesystem::path replayFolder(int domain, const std::string& cell, const std::string& run);
+/// Makes it when it is missing, for its owner alone.
+void makePrivateFolder(const std::filesystem::path& folder);
 
 /// The key of a run, a file in its folder that only its owner can read: whoever can may operate the run. Throws
 /// UnavailableError when it cannot be written or read.

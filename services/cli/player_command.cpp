@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
 
+#include "base/text.hpp"
 #include "cell_target.hpp"
 #include "messages/state_names.hpp"
 #include "runtime/command_line.hpp"
@@ -54,7 +56,7 @@ Replay findReplay(const PlayerArguments& arguments) {
   }
   std::string runs;
   for (const dds::Peer& peer : observer.peers()) {
-    if (peer.service != kReplayer || peer.cell != place.cell) continue;
+    if (peer.service != kReplayer || peer.cell != place.cell || !isFileName(peer.run, "")) continue;
     if (!arguments.run.empty() && peer.run != arguments.run) continue;
     runs += (runs.empty() ? "" : ", ") + ("--run " + peer.run);
     place.run = peer.run;
@@ -106,7 +108,13 @@ void tell(const PlayerArguments& arguments) {
 }
 
 void ask(const PlayerArguments& arguments, ExitCode& exit_code) {
-  const auto [place, status] = findReplay(arguments);
+  auto [place, status] = findReplay(arguments);
+  place.folder = replayFolder(place.domain, place.cell, place.run).string();
+  std::error_code is_hidden;
+  if (!std::filesystem::exists(keyFile(place), is_hidden)) {
+    throw UnavailableError("run " + place.run + " of cell " + place.cell +
+                           " takes requests from the user who started it, with the same BATON_HOME");
+  }
   CellClient client(place);
   msg::ReplayRequest request = arguments.request;
   request.request_id(CellClient::newRequestId());
@@ -142,7 +150,7 @@ void addPlayerCommand(CLI::App& app, ExitCode& exit_code) {
   command->require_subcommand(1);
   command->footer(
       "Exit codes: 0 done, 1 refused or cut short, 2 wrong input, or several replays go on and none is named,\n"
-      "3 nothing is replayed there, or it does not answer.");
+      "3 nothing is replayed there, it does not answer, or it is somebody else's.");
   const auto addSub = [&](const char* name, const char* help) {
     CLI::App* sub = addCellCommand(*command, arguments->target, name, help);
     sub->add_option("--run", arguments->run, "its run, where several go on in a cell");

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/paths.hpp"
 
@@ -116,6 +117,9 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
     throw UsageError("--max-late-us: expected a --rate at which messages have their time, found max");
   }
   if (options.run.empty()) options.run = newRunId();
+  if (!isFileName(options.run, "")) {
+    throw UsageError("--run: expected a name without / that does not begin with a dot, found " + options.run);
+  }
   return true;
 }
 

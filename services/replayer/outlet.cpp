@@ -91,7 +91,8 @@ Readers Outlet::readers() const {
   for (const auto& [id, line] : lines_) {
     auto& processes = readers.emplace(line.topic, Readers::mapped_type{})->second;
     for (const dds::GuidPrefix& prefix : line.writer.matched()) {
-      const auto peer = participant_.peer(prefix);
+      auto peer = participant_.peer(prefix);
+      if (!peer) peer = participant_.stranger(prefix);  // listeners need no key
       processes.emplace(prefix, peer ? peer->service : "");
     }
   }

@@ -13,8 +13,9 @@ namespace baton {
 
 class Remote {
  public:
+  /// @param heard       whose requests count.
   /// @param on_request  called when there is something to take, on a DDS thread.
-  Remote(dds::Participant& participant, std::function<void()> on_request);
+  Remote(dds::Participant& participant, dds::WriterFilter heard, std::function<void()> on_request);
 
   /// The requests that came since this was asked last.
   [[nodiscard]] std::vector<msg::ReplayRequest> take();

@@ -22,14 +22,15 @@ constexpr std::int64_t kQuiet_ns = 500'000;
 constexpr std::int64_t kLongDue_ns = 400'000'000;
 constexpr std::int64_t kForever_ns = 1'000'000'000'000'000'000;
 
-dds::ParticipantOptions participantOptions(const ReplayOptions& options) {
+dds::ParticipantOptions participantOptions(const ReplayOptions& options, const dds::RunKey& key) {
   dds::ParticipantOptions place{.domain = options.domain,
                                 .partition = options.cell + "/" + options.run,
                                 .addresses = dds::addressesOf(options.interfaces, dds::interfaces()),
                                 .cell = options.cell,
                                 .run = options.run,
                                 .service = "replayer",
-                                .transport = options.transport};
+                                .transport = options.transport,
+                                .key = key};
   if (options.partition) place.other_partitions.push_back(*options.partition);
   for (const RunInfo& active : activeRuns()) {
     if (active.domain != options.domain) continue;
@@ -68,13 +69,15 @@ Replayer::Replayer(const ReplayOptions& options)
     : options_(scheduled(options)),
       playlist_(options),
       playback_(planOf(options)),
-      participant_(participantOptions(options)),
+      own_key_(options.domain, options.cell, options.run),
+      participant_(participantOptions(options, own_key_.key())),
+      admission_(participant_, false, [](const std::string& text) { spdlog::warn("{}", text); }),
       outlet_(participant_, playlist_.endpoints(),
               [this] {
                 reportBefore(kForever_ns);
                 return !isInterrupted() && !playback_.isStopped() && !sleeper_.rings();
               }),
-      remote_(participant_, [this] { sleeper_.ring(); }) {
+      remote_(participant_, admission_.filter(dds::topics::kReplayRequest), [this] { sleeper_.ring(); }) {
   for (const auto& [id, reason] : outlet_.refused()) playlist_.leaveOut(id, reason);
   playlist_.rewind();
   fetch();

@@ -15,9 +15,11 @@
 #include "base/error.hpp"
 #include "options.hpp"
 #include "outlet.hpp"
+#include "own_key.hpp"
 #include "playback.hpp"
 #include "playlist.hpp"
 #include "remote.hpp"
+#include "runtime/admission.hpp"
 #include "runtime/progress_line.hpp"
 #include "sleeper.hpp"
 #include "terminal.hpp"
@@ -85,7 +87,9 @@ class Replayer {
   Sleeper sleeper_;
   Playlist playlist_;
   Playback playback_;
+  OwnKey own_key_;
   dds::Participant participant_;
+  Admission admission_;  // of requests
   Outlet outlet_;
   Remote remote_;
   ReplayResult result_;

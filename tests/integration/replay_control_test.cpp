@@ -12,8 +12,9 @@
 #include <mutex>
 #include <numeric>
 
-#include "dds/endpoint.hpp"
+#include "dds/typed.hpp"
 #include "mcap/writer.hpp"
+#include "runtime/paths.hpp"
 #include "support/processes.hpp"
 
 namespace baton::test {
@@ -145,6 +146,47 @@ TEST_F(ReplayControl, StepsExactlySoManyAndAPauseHolds) {
   player({"stop"});
   EXPECT_EQ(bench_.wait(pid_), 0);
   EXPECT_EQ(listener.numbers().size(), numbers);
+}
+
+TEST_F(ReplayControl, TheNameOfARunLeadsToNoOtherFolder) {
+  const std::string file = writeNumbers(bench_, 10);
+  for (const char* wrong : {"../a", "a/b", ".a"}) {
+    const Finished refused = bench_.baton({"replay", file, "--run", wrong});
+    EXPECT_EQ(refused.exit_code, 2) << refused.out;
+    EXPECT_NE(refused.err.find(wrong), std::string::npos) << refused.err;
+  }
+}
+
+TEST_F(ReplayControl, ObeysItsUserAlone) {
+  start({writeNumbers(bench_, 1000), "--paused"});
+  ASSERT_TRUE(stands("paused"));
+  dds::Participant stranger({.domain = bench_.domain(),
+                             .partition = "replay/test",
+                             .cell = "replay",
+                             .run = "test",
+                             .service = "operator-1"});
+  dds::Writer<msg::ReplayRequest> writer(stranger, dds::topics::kReplayRequest);
+  ASSERT_TRUE(eventually([&] { return !writer.raw().matched().empty(); }));
+  msg::ReplayRequest request;
+  request.action(msg::REPLAY_STOP);
+  writer.write(request);
+  ASSERT_TRUE(eventually([&] {
+    return readFile(bench_.folder() / "replay.log").find("a stranger writes on replay_request") != std::string::npos;
+  }));
+  EXPECT_EQ(player({"step", "3"}).at("messages"), 3);
+  const std::filesystem::path key = bench_.folder() / "replays" / std::to_string(bench_.domain()) / "replay/test/key";
+  EXPECT_EQ(std::filesystem::status(key).permissions(),
+            std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+
+  std::filesystem::rename(key, bench_.folder() / "key");  // as for another user, who cannot read it
+  const Finished refused = bench_.baton({"player", "stop"});
+  EXPECT_EQ(refused.exit_code, 3) << refused.out;
+  EXPECT_NE(refused.err.find("takes requests from the user who started it"), std::string::npos) << refused.err;
+  std::filesystem::rename(bench_.folder() / "key", key);
+
+  player({"stop"});
+  EXPECT_EQ(bench_.wait(pid_), 0);
+  EXPECT_FALSE(std::filesystem::exists(key.parent_path()));
 }
 
 TEST_F(ReplayControl, SeeksWhereItIsToldBothWays) {
