@@ -201,7 +201,7 @@ void addKillsCommand(CLI::App& app, ExitCode& exit_code) {
       "SIGSTOP: the holder of the baton, one that stands by, environment, trajectory or recorder. Checks that the run\n"
       "ends as its scenario has it, that every torque is finite and within its limit, and that a re-run from the\n"
       "recording has the same bytes. The same seed gives the same list of kills.\n"
-      "Exit codes: 0 all of it held every time, 1 it did not; what did not is told and kept.");
+      "Exit codes: 0 all of it held every time, 1 it did not; what did not is told and kept; 130 interrupted.");
   command->add_option("scenario", request->scenario, "another scenario: lockstep, a wall, a planned handover")
       ->capture_default_str();
   command->add_option("--runs", request->runs, "how many")->check(wholeBetween(1, 100'000))->capture_default_str();

@@ -7,8 +7,10 @@
 #include <map>
 #include <mutex>
 
+#include "dds/parting.hpp"
 #include "dds/typed.hpp"
 #include "recorded_run.hpp"
+#include "runtime/admission.hpp"
 #include "runtime/scenario_edit.hpp"
 #include "runtime/service_options.hpp"
 
@@ -22,13 +24,20 @@ class Killer {
   Killer(const RunInfo& info, const std::optional<Kill>& kill)
       : kill_(kill),
         participant_(operatorOf(info)),
+        admission_(participant_, false, [](const std::string&) {}),  // the run itself tells
         request_(participant_, dds::topics::kSimRequest),
-        services_(participant_, dds::topics::kServiceStatus,
-                  [this](const msg::ServiceStatus& status, const dds::RawSample&) { onService(status); }),
-        status_(participant_, dds::topics::kSimStatus,
-                [this](const msg::SimStatus& status, const dds::RawSample&) { onStatus(status); }),
-        states_(participant_, dds::topics::kPlantState,
-                [this](const msg::PlantState& state, const dds::RawSample&) { onState(state); }) {}
+        services_(
+            participant_, dds::topics::kServiceStatus,
+            [this](const msg::ServiceStatus& status, const dds::RawSample&) { onService(status); }, {},
+            admission_.filter(dds::topics::kServiceStatus)),  // a stranger could name any process
+        status_(
+            participant_, dds::topics::kSimStatus,
+            [this](const msg::SimStatus& status, const dds::RawSample&) { onStatus(status); }, {},
+            admission_.filter(dds::topics::kSimStatus)),
+        states_(
+            participant_, dds::topics::kPlantState,
+            [this](const msg::PlantState& state, const dds::RawSample&) { onState(state); }, {},
+            admission_.filter(dds::topics::kPlantState)) {}
 
   /// Whenever one likes: lets the run go once everybody is known.
   void resume(const std::vector<std::string>& services) {
@@ -108,6 +117,7 @@ class Killer {
   std::uint64_t step_ = 0;
   int stopped_pid_ = 0;  // that waits to go on
   dds::Participant participant_;
+  Admission admission_;
   dds::Writer<msg::SimRequest> request_;
   dds::Reader<msg::ServiceStatus> services_;
   dds::Reader<msg::SimStatus> status_;
@@ -139,10 +149,17 @@ KilledRun killRun(const Scenario& scenario, const std::optional<Kill>& kill, con
   request.paused = true;
 
   RunSession session(request, true);
-  Killer killer(session.info(), kill);
-  std::vector<std::string> services = serviceNames(scenario);
-  const ExitCode code = followToItsEnd(session, [&](const auto&) { killer.resume(services); });
-  return {.service = killer.service(), .step = killer.step(), .exit_code = code, .result = session.result()};
+  KilledRun run;
+  {
+    const dds::Parting<Killer> killer(session.info(), kill);
+    const std::vector<std::string> services = serviceNames(scenario);
+    run.exit_code = followToItsEnd(session, [&](const auto&) { killer->resume(services); });
+    run.service = killer->service();
+    run.step = killer->step();
+  }
+  if (session.wasInterrupted()) run.exit_code = ExitCode::kInterrupted;  // while it was taken down, too
+  run.result = session.result();
+  return run;
 }
 
 }  // namespace baton
