@@ -87,8 +87,8 @@ rtps::Locator_t locatorOf(const std::string& address, std::uint32_t port = 0) {
 /// Where a participant announces itself and listens for others. Each discovers each: in one group, the work would grow
 /// with the square of all processes of all cells. So the members of a cell listen in their group. All announce
 /// themselves in the group of RTPS as well, where every other program listens, and those of ours that read or write in
-/// other cells; who finds a member there answers it directly. (In one of the two alone: Fast DDS binds one socket a
-/// port, to the first group.) Two cells with the same group find each other, which is only slower.
+/// other cells; who finds a member there answers it directly. (Nobody listens in both groups: Fast DDS binds one socket
+/// a port, to the first group.) Two cells with the same group find each other, which is only slower.
 void discoverIn(const ParticipantOptions& options, const std::vector<std::string>& addresses,
                 DomainParticipantQos& qos) {
   const std::uint32_t port = 7400 + 250 * static_cast<std::uint32_t>(options.domain);  // RTPS 2.5, 9.6.2.3
@@ -165,11 +165,12 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const Pee
   }
 
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
-  // DDS answers a new member of the cell at once; the period is for lost datagrams, and for who does not speak in the
-  // cell's group. Each participant sends to every other, so the traffic grows with the square of their number. A
-  // service that still waits for a peer calls announce(). The lease is longer than any stop of a process (SIGSTOP); the
-  // supervisor notices processes that end, not DDS. Another reason for a long lease: Fast DDS 2.9.1 checks a lease once
-  // per lease duration, and an assertion ends the process when its participant leaves during the check.
+  // DDS answers a new member of the cell at once; the period is for lost datagrams, and for participants that send
+  // nothing to the cell's group. Each participant sends to every other, so the traffic grows with the square of their
+  // number. A service that still waits for a peer calls announce(). The lease is longer than any stop of a process
+  // (SIGSTOP); the supervisor notices processes that end, not DDS. Another reason for a long lease: Fast DDS 2.9.1
+  // checks a lease once per lease duration, and an assertion ends the process when its participant leaves during the
+  // check.
   discovery.leaseDuration_announcementperiod = {3, 0};
   discovery.leaseDuration = {options.lease_s, 0};
   discovery.initial_announcements.count = 5;

@@ -1,10 +1,11 @@
 /// The end of what uses DDS. A forged datagram can keep a thread of Fast DDS busy for ever, with locks that every
-/// reader and the participant need for their own end (common/README.md, "Forged RTPS"): who just destroys them hangs.
+/// reader and the participant need for their own end (common/README.md, "Forged RTPS"): a plain destructor would hang.
 #pragma once
 
 #include <chrono>
 #include <future>
 #include <memory>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -20,9 +21,16 @@ void noteLeftover() noexcept;
 /// and returns false; the process must end by leave().
 template <class Owner>
 [[nodiscard]] bool partFrom(std::unique_ptr<Owner> owner, std::chrono::milliseconds patience = kPartingPatience) {
-  std::packaged_task<void()> end([owner = std::move(owner)]() mutable { owner.reset(); });
+  const auto kept = std::make_shared<std::unique_ptr<Owner>>(std::move(owner));
+  std::packaged_task<void()> end([kept] { kept->reset(); });
   const std::future<void> ended = end.get_future();
-  std::thread thread(std::move(end));
+  std::thread thread;
+  try {
+    thread = std::thread(std::move(end));
+  } catch (const std::system_error&) {  // no thread is to be had: without a limit, then
+    kept->reset();
+    return true;
+  }
   if (ended.wait_for(patience) == std::future_status::ready) {
     thread.join();
     return true;
