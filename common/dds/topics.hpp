@@ -88,6 +88,14 @@ BATON_TOPICS(BATON_TOPIC_CONSTANT)
 inline constexpr std::array kAll{BATON_TOPICS(BATON_TOPIC_FACTS)};
 #undef BATON_TOPIC_FACTS
 
+#define BATON_TOPIC_VISIT(constant, ...) visit(constant);
+/// Calls `visit` with each topic, whose types differ.
+template <class Visit>
+constexpr void forEach(const Visit& visit) {
+  BATON_TOPICS(BATON_TOPIC_VISIT)
+}
+#undef BATON_TOPIC_VISIT
+
 /// Of a topic of Baton's; nullptr for any other.
 [[nodiscard]] constexpr const TopicFacts* called(std::string_view name) {
   const auto found = std::ranges::find(kAll, name, &TopicFacts::name);

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <cstdlib>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include "dds/codec.hpp"
@@ -58,26 +57,6 @@ void receive(const dds::Topic<T>& /*topic*/, std::span<const std::byte> payload)
   readSignals(message);
 }
 
-constexpr std::tuple kTopics{dds::topics::kPlantState,      dds::topics::kPlantStateAgain,
-                             dds::topics::kContact,         dds::topics::kReference,
-                             dds::topics::kJointCommand,    dds::topics::kShadowCommand,
-                             dds::topics::kCheckpoint,      dds::topics::kSimRequest,
-                             dds::topics::kSimReply,        dds::topics::kSimStatus,
-                             dds::topics::kRewind,          dds::topics::kRewindAck,
-                             dds::topics::kTimingStatus,    dds::topics::kSwapRequest,
-                             dds::topics::kSwapPlan,        dds::topics::kSwapAck,
-                             dds::topics::kSwapOutcome,     dds::topics::kSwapReport,
-                             dds::topics::kBatonStatus,     dds::topics::kControllerStatus,
-                             dds::topics::kParameterStatus, dds::topics::kParameterRequest,
-                             dds::topics::kParameterReply,  dds::topics::kDecision,
-                             dds::topics::kLaunchRequest,   dds::topics::kLaunchReply,
-                             dds::topics::kServiceStatus,   dds::topics::kServiceManifest,
-                             dds::topics::kEvent,           dds::topics::kRecorderStatus,
-                             dds::topics::kRecordRequest,   dds::topics::kRecordReply,
-                             dds::topics::kReplayStatus,    dds::topics::kReplayRequest,
-                             dds::topics::kReplayReply};
-static_assert(std::tuple_size_v<decltype(kTopics)> == dds::topics::kAll.size(), "a topic is missing here");
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -87,6 +66,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto receiveIfChosen = [&](const auto& topic) {
     if (left-- == 0) receive(topic, payload);
   };
-  std::apply([&](const auto&... topic) { (receiveIfChosen(topic), ...); }, kTopics);
+  dds::topics::forEach(receiveIfChosen);
   return 0;
 }

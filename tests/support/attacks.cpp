@@ -39,6 +39,14 @@ msg::SimRequest simRequest(msg::SimAction action) {
   return request;
 }
 
+/// As the type makes it; where it has a step, of the next one.
+template <class T>
+T timely(const dds::Topic<T>& /*topic*/, const msg::PlantState& state) {
+  T message;
+  if constexpr (requires { message.step(std::uint64_t{}); }) message.step(state.step() + 1);
+  return message;
+}
+
 using State = const msg::PlantState&;
 using Run = const LiveRun&;
 
@@ -249,6 +257,14 @@ const Attack kAttacks[] = {
               event.kind("failover");
               return event;
             })},
+    {"every_topic", "meter",
+     [](Stranger& stranger, State state, Run) {
+       dds::topics::forEach([&](const auto& topic) { stranger.say(topic, timely(topic, state)); });
+     }},
+    {"contact_flood", "environment",
+     [](Stranger& stranger, State state, Run) {
+       for (int i = 0; i < 5; ++i) stranger.say(dds::topics::kContact, contactAt(state.step() + 1, 50.0));
+     }},
     {"another_type", "gauge",
      [](Stranger& stranger, State, Run) { stranger.sayRaw("contact", "somebody::Else", std::array<std::byte, 8>{}); }},
     {"control_characters", "beacon",
