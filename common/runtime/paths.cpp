@@ -75,6 +75,9 @@ fs::path findScenario(const std::string& name) {
   if (fs::is_regular_file(name, is_none)) return fs::absolute(name);
   const fs::path folder = dataFolder() / "scenarios";
   if (fs::path known = folder / (name + ".yaml"); fs::is_regular_file(known, is_none)) return known;
+  if (fs::is_directory(name, is_none)) {
+    throw UsageError("scenario " + printable(name) + ": expected a file, found a folder");
+  }
   std::string names;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".yaml") names += (names.empty() ? "" : ", ") + entry.path().stem().string();

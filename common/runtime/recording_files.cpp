@@ -60,10 +60,10 @@ Said askFile(const fs::path& path) {
 }
 
 /// Recordings in a folder, those of its subfolders not.
-std::vector<fs::path> recordingsIn(const fs::path& folder) {
+std::vector<fs::path> recordingsIn(const fs::path& folder, const char* ending = ".mcap") {
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder)) {
-    if (entry.path().extension() == ".mcap" && entry.is_regular_file()) found.push_back(entry.path());
+    if (entry.path().extension() == ending && entry.is_regular_file()) found.push_back(entry.path());
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -77,7 +77,8 @@ std::vector<fs::path> expandFolders(const std::vector<std::string>& given) {
       paths.emplace_back(one);
       continue;
     }
-    const std::vector<fs::path> inside = recordingsIn(one);
+    std::vector<fs::path> inside = recordingsIn(one);
+    if (inside.empty()) inside = recordingsIn(one, ".db3");  // of rosbag2: it is refused with what to do about it
     if (inside.empty()) throw UsageError(one + ": expected a folder with recordings (*.mcap), found none in it");
     paths.insert(paths.end(), inside.begin(), inside.end());
   }

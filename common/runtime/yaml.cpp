@@ -7,6 +7,7 @@
 #include <cassert>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string_view>
@@ -67,6 +68,17 @@ std::optional<double> parseNumber(const std::string& scalar) {
 
 [[noreturn]] void failAt(const std::string& file, int line, const std::string& message) {
   throw UsageError(file + ":" + std::to_string(line) + ": " + message);
+}
+
+/// Files that are given in the place of a scenario or a robot; empty for what may be YAML.
+std::string otherFormat(std::string_view text) {
+  if (text.starts_with("\x89MCAP")) return "a recording; `baton rerun` does a recorded run again";
+  const std::size_t begin = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  if (begin != std::string_view::npos && text[begin] == '<') {
+    return "XML, as a robot description (URDF) is; a robot's file lists joints and masses as deploy/robots/rpp.yaml "
+           "does";
+  }
+  return "";
 }
 
 int lineOf(const YAML::Mark& mark) { return mark.is_null() ? 1 : mark.line + 1; }
@@ -398,11 +410,16 @@ std::string shownNumber(double x) {
 }
 
 std::string readYamlFile(const std::string& path) {
+  std::error_code is_none;
+  if (std::filesystem::is_directory(path, is_none)) throw UsageError(path + ": expected a file, found a folder");
   std::ifstream file(path, std::ios::binary);
   std::string text(kMaxYamlBytes + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (file.bad() || (file.fail() && !file.eof())) throw UsageError(path + ": expected a file that can be read");
   text.resize(static_cast<std::size_t>(file.gcount()));
+  if (const std::string other = otherFormat(text); !other.empty()) {
+    throw UsageError(path + ": expected YAML, found " + other);
+  }
   if (text.size() > kMaxYamlBytes) {
     throw UsageError(path + ": expected a file of at most " + counted(kMaxYamlBytes, "byte") + ", found a larger one");
   }

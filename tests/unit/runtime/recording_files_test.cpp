@@ -84,6 +84,9 @@ TEST_F(RecordingFiles, AFolderStandsForTheRecordingsInIt) {
   EXPECT_EQ(names(findRecording({.given = {folder.string()}})), (Texts{"b.mcap", "a.mcap"}));
   fs::create_directory(folder / "empty");
   EXPECT_NE(refusal({.given = {(folder / "empty").string()}}).find("a folder with recordings"), std::string::npos);
+  std::ofstream(folder / "empty/rosbag2_0.db3") << "SQLite format 3" << std::string(100, '\0');
+  EXPECT_NE(refusal({.given = {(folder / "empty").string()}, .with_parts = true}).find("`ros2 bag convert`"),
+            std::string::npos);
 }
 
 TEST_F(RecordingFiles, OtherPartsAreFoundWhenAskedForByWhatTheySay) {

@@ -1,8 +1,11 @@
 #include "runtime/yaml.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "bad_input.hpp"
 
@@ -246,9 +249,22 @@ TEST(YamlMessage, ShowsForeignTextShortAndWithoutControlCharacters) {
 TEST(YamlFile, ThatCannotBeReadIsNamed) {
   EXPECT_EQ(refusal([] { return readYamlFile("no/such/file.yaml"); }),
             "no/such/file.yaml: expected a file that can be read");
-  EXPECT_EQ(refusal([] { return readYamlFile("/"); }), "/: expected a file that can be read");
+  EXPECT_EQ(refusal([] { return readYamlFile("/"); }), "/: expected a file, found a folder");
   EXPECT_NE(refusal([] { return readYamlFile("/dev/zero"); }).find("expected a file of at most 1048576 bytes"),
             std::string::npos);
+}
+
+TEST(YamlFile, OfAnotherFormatIsToldWhatItIs) {
+  const std::string file = testing::TempDir() + "other_format_" + std::to_string(getpid());
+  const auto refusalOf = [&](const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+    return refusal([&] { return readYamlFile(file); });
+  };
+  EXPECT_EQ(refusalOf("\n<?xml version=\"1.0\"?>\n<robot name=\"arm\"/>\n").find(file + ": expected YAML, found XML"),
+            0U);
+  EXPECT_EQ(refusalOf("\x89MCAP0\r\n" + std::string(3 << 20, 'x')).find(file + ": expected YAML, found a recording"),
+            0U);
+  std::filesystem::remove(file);
 }
 
 }  // namespace
