@@ -16,8 +16,8 @@ void addMetricsCommand(CLI::App& app, ExitCode& exit_code) {
   CLI::App* command = app.add_subcommand("metrics", "errors, efforts and contact forces of a recorded run, in numbers");
   command->footer(
       "Errors are desired minus actual. Overshoot and settling are of the way from where a signal starts to its\n"
-      "set-point; settled means within 2 % of that way for good. A dash: the desired value moves, there is no way, or\n"
-      "what it takes was not recorded.");
+      "set-point; settled means within 2 % of that way for good. A dash: the desired value moves, there is no way,\n"
+      "the recording begins in the middle of the run, or what it takes was not recorded.");
   addRecording(*command, *wish);
   command->add_flag("--json", *json, "print JSON");
   command->callback([=, &exit_code] {

@@ -135,6 +135,22 @@ TEST(Metrics, TheDurationOfABranchIsItsOwn) {
   EXPECT_NEAR(metricsOf(trace).duration_s, 0.1, 1e-12);
 }
 
+TEST(Metrics, WhatBeganBeforeTheRecordingHasNoOvershoot) {
+  // Almost there when the recording begins: of that last bit an overshoot would be many times itself.
+  Trace trace = emptyTrace(101);
+  trace.first_step = 400;
+  trace.q_d.setConstant(1.0);
+  trace.q.setConstant(1.0 + 1e-4);
+  trace.q(0, 0) = 1.0 - 1e-6;
+  trace.p_WE_d.setConstant(1.0);
+  const Metrics metrics = metricsOf(trace);
+  for (const ErrorMetrics& one : {metrics.joints.at(0), metrics.task.at(2)}) {
+    EXPECT_TRUE(std::isnan(one.overshoot)) << one.name;
+    EXPECT_TRUE(std::isnan(one.settling_s)) << one.name;
+    EXPECT_TRUE(std::isfinite(one.rms)) << one.name;
+  }
+}
+
 TEST(Metrics, AMotionGivenInTaskSpaceHasNoJointErrors) {
   Trace trace = emptyTrace(11);
   trace.q_d.setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -120,6 +120,11 @@ Metrics metricsOf(const Trace& trace) {
     m.task.push_back(std::move(turned));
   }
   m.final_force_N = trace.h_e.col(trace.last()).head<3>();
+  if (trace.first_step > 0) {  // the way began before the recording did
+    for (std::vector<ErrorMetrics>* signals : {&m.joints, &m.task}) {
+      for (ErrorMetrics& one : *signals) one.overshoot = one.settling_s = kNan;
+    }
+  }
   for (int i = 0; i < 3; ++i) {
     for (Eigen::Index k = 0; k < trace.steps(); ++k) {
       const double force = trace.h_e(i, k);

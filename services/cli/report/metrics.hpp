@@ -11,8 +11,9 @@
 namespace baton {
 
 /// Of one error signal e = desired - actual over the run. A set-point y1, reached from the actual value y0 at the
-/// start, makes a stroke |y1 - y0|; where the desired value moves, or there is no stroke, overshoot and settling are
-/// NaN. Where steps were not recorded the integrals are NaN, and peaks are of what was recorded.
+/// start, makes a stroke |y1 - y0|; where the desired value moves, there is no stroke, or the recording begins after
+/// step 0, overshoot and settling are NaN. Where steps were not recorded the integrals are NaN, and peaks are of what
+/// was recorded.
 struct ErrorMetrics {
   std::string name;         // "q1", "x"
   std::string unit;         // of the error

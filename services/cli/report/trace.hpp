@@ -35,7 +35,7 @@ struct Trace {
   Eigen::MatrixXd A_WE_d;            // desired, 6 x steps [m/s^2; rad/s^2]
   Eigen::MatrixXd h_e;               // wrench the tip exerts on the environment, 6 x steps [N; N m]
   Eigen::MatrixXd h_d;               // desired wrench, 6 x steps
-  std::uint64_t first_step = 0;      // 0 unless the run is a branch
+  std::uint64_t first_step = 0;      // 0 unless the run is a branch, or the recording begins later
   std::vector<std::uint64_t> chain;  // hash of all payloads of the loop up to the step before; 0: none
   std::vector<msg::SwapOutcome> swaps;  // those that took place, in order
   std::uint64_t missed_steps = 0;
