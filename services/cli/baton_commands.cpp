@@ -306,7 +306,7 @@ void addBatonCommands(CLI::App& app, ExitCode& exit_code) {
   CLI::Option* at = command->add_option_function<std::uint64_t>(
       "--at", [wish](const std::uint64_t& step) { wish->at_step = stepToCome(step); },
       "step at which it takes over (default: as soon as the margin allows)");
-  command->add_option("--at-time", wish->at_s, "the same in seconds of the run")->excludes(at);
+  addAtTime(*command, wish->at_s, at);
   CLI::Option* blend =
       command->add_option("--blend", wish->blend_ms, "ms over which the difference fades (default: the scenario's)")
           ->check(between(0.0, kMaxBlend_s * 1e3));

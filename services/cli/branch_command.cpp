@@ -1,7 +1,5 @@
 #include "branch_command.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -9,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "cell_target.hpp"
 #include "recorded_run.hpp"
 #include "report/recording.hpp"
 #include "run_commands.hpp"
@@ -47,11 +46,7 @@ struct Fork {
 std::uint64_t stepOf(const BranchRequest& request, const Scenario& scenario) {
   if (request.at_step) return *request.at_step;
   if (!request.at_s) throw UsageError("branch: expected --at STEP or --at-time SECONDS");
-  const double steps = std::round(*request.at_s / scenario.stepSeconds());
-  if (!(steps >= 0.0 && steps < 1e18)) {
-    throw UsageError(fmt::format("--at-time: expected seconds from 0 on, found {:g}", *request.at_s));
-  }
-  return static_cast<std::uint64_t>(steps);
+  return static_cast<std::uint64_t>(std::round(*request.at_s / scenario.stepSeconds()));
 }
 
 Fork read(const BranchRequest& request) {
@@ -114,6 +109,7 @@ CheckpointSet checkpointAt(const Fork& fork, const fs::path& folder, const RunRe
   const nlohmann::ordered_json result =
       runFrom(newest, folder, repeatingScenario(original, step), original, lead_in, code);
   const bool is_same = result.at("chain_hash") == std::to_string(fork.state.chain_hash());
+  if (code == ExitCode::kInterrupted) throw Error(code, "interrupted while the steps before the branch were repeated");
   // A controller that was lost then is lost again, which is no success of a run.
   if (result.at("state") != "finished") {
     throw Error(code, "the steps before the branch could not be repeated: " + result.at("reason").get<std::string>());
@@ -204,7 +200,7 @@ void addBranchCommand(CLI::App& app, ExitCode& exit_code) {
   addRecording(*command, request->recording, "recording",
                "recording of a run (MCAP); several, or a folder of them: read as one");
   auto* at = command->add_option("--at", request->at_step, "step to go on from");
-  command->add_option("--at-time", request->at_s, "the same in seconds of the run")->excludes(at);
+  addAtTime(*command, request->at_s, at);
   command->add_option("--swap", request->swap, "hand over to this controller, as soon as the margin allows");
   command->add_option("--set", request->set, "path=value in the scenario, from that step on")->allow_extra_args(false);
   command->add_option("--out", request->run.out, "file to record to (default: in a folder of the branch's own)");

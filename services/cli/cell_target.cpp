@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "run_commands.hpp"
+#include "runtime/command_line.hpp"
 
 namespace baton {
 
@@ -28,6 +29,10 @@ msg::SimStatus simStatus(CellClient& client) {
 std::uint64_t stepToCome(std::uint64_t step) {
   if (step == 0) throw UsageError("--at 0: expected a step that is still to come; leave --at out for now");
   return step;
+}
+
+void addAtTime(CLI::App& command, std::optional<double>& at_s, CLI::Option* at) {
+  command.add_option("--at-time", at_s, "the same in seconds of the run")->excludes(at)->check(between(0.0, 1e9));
 }
 
 std::uint64_t stepAt(CellClient& client, double time_s) {

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "cell_client.hpp"
@@ -23,6 +24,9 @@ CLI::App* addCellCommand(CLI::App& app, CellTarget& target, const char* name, co
 
 /// The value of --at: on the wire 0 stands for no step in particular. Throws UsageError.
 [[nodiscard]] std::uint64_t stepToCome(std::uint64_t step);
+
+/// --at-time [s], the same as the option `at` in another unit: from 0 to 1e9, so that its step is a number.
+void addAtTime(CLI::App& command, std::optional<double>& at_s, CLI::Option* at);
 
 /// The value of --at-time [s]: the step nearest to a time of the run. Throws UsageError.
 [[nodiscard]] std::uint64_t stepAt(CellClient& client, double time_s);

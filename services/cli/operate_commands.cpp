@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -34,6 +35,15 @@ void status(const CellTarget& target) {
   const Json timing = baton::toJson(
       client.latest(dds::topics::kTimingStatus, CellClient::kStatusPatience).value_or(msg::TimingStatus{}));
   std::vector<std::string> expected = serviceNames(scenario);
+  expected.emplace_back(kSupervisorName);
+  const bool has_begun = sim.state() != msg::SIM_STATE_STARTING;  // before, the plant says nothing of the baton
+  const auto baton =
+      !has_begun ? msg::BatonStatus{}
+                 : client.latest(dds::topics::kBatonStatus, CellClient::kStatusPatience).value_or(msg::BatonStatus{});
+  for (const msg::BatonMember& member : baton.members()) {  // those that joined on the way, too
+    if (std::ranges::find(expected, member.name().c_str()) == expected.end())
+      expected.emplace_back(member.name().c_str());
+  }
   if (client.info().recording.empty()) std::erase(expected, kRecorderName);
   const auto services = latestByName(client, dds::topics::kServiceStatus, expected);
   const double time_s = static_cast<double>(sim.time_ns()) * 1e-9;
@@ -115,8 +125,10 @@ void sim(const CellTarget& target, const msg::SimRequest& what, const std::optio
       [&](const msg::SimReply& one) { return one.request_id() == request.request_id(); }, kPlantName);
   if (!reply) throw UnavailableError("the plant did not answer; see `baton status`");
   exit_code = reply->accepted() ? ExitCode::kOk : ExitCode::kFailed;
-  if (reply->accepted() && what.action() == msg::SIM_STEP)
-    reply->step(stepReached(client, reply->step() + what.steps()));
+  if (reply->accepted() && what.action() == msg::SIM_STEP) {
+    const std::uint64_t most = std::numeric_limits<std::uint64_t>::max() - reply->step();
+    reply->step(stepReached(client, reply->step() + std::min(what.steps(), most)));
+  }
   if (target.json) {
     std::cout << toText(Json{
                      {"accepted", reply->accepted()}, {"step", reply->step()}, {"reason", reply->reason().c_str()}})
@@ -149,7 +161,7 @@ void addSimCommands(CLI::App& app, const std::shared_ptr<CellTarget>& target, Ex
     auto* at = sub->add_option_function<std::uint64_t>(
         "--at", [request](const std::uint64_t& step) { request->at_step(stepToCome(step)); },
         "when this step opens, not here");
-    sub->add_option("--at-time", *at_s, "the same in seconds of the run")->excludes(at);
+    addAtTime(*sub, *at_s, at);
   };
   addWhen(add("pause", "hold the run before its next step", msg::SIM_PAUSE));
   add("resume", "go on", msg::SIM_RESUME);

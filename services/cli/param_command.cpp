@@ -193,7 +193,7 @@ void addParamCommand(CLI::App& app, ExitCode& exit_code) {
   auto* at = set_command->add_option_function<std::uint64_t>(
       "--at", [request](const std::uint64_t& step) { request->at_step = stepToCome(step); },
       "the first step with them (default: as soon as possible)");
-  set_command->add_option("--at-time", request->at_s, "the same in seconds of the run")->excludes(at);
+  addAtTime(*set_command, request->at_s, at);
   set_command->callback([=, &exit_code] { set(*request, exit_code); });
 }
 

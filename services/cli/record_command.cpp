@@ -105,7 +105,8 @@ std::string nameOf(const std::string& out, const RunInfo& run) {
   if (out.empty()) return "";
   const std::filesystem::path path = outputPath(out).lexically_normal();
   const std::string name = path.filename().string();
-  if (std::filesystem::exists(path)) throw UsageError("--out " + out + " exists: choose another name");
+  if (std::filesystem::exists(path))
+    throw UnavailableError("--out " + path.string() + " is there already: choose another name");
   if (!isFileName(name, ".mcap")) throw UsageError("--out " + printable(out) + ": expected a file that ends in .mcap");
   constexpr std::size_t kMaxPath = 400;
   if (path.string().size() > kMaxPath) throw UsageError("--out: expected a path of at most 400 characters");
@@ -169,7 +170,8 @@ void addRecordCommand(CLI::App& app, ExitCode& exit_code) {
       "and\n"
       "makes no recording incomplete. Steps are those of plant_state; in JSON, \"step\" is the last one before what\n"
       "was asked took effect.\n"
-      "Exit codes: 0 done; 1 refused, or the recorder has failed; 2 wrong input; 3 no run, no recorder, no answer.");
+      "Exit codes: 0 done; 1 refused, or the recorder has failed; 2 wrong input; 3 no run, no recorder, no answer,\n"
+      "or the file is there already.");
   const auto arguments = std::make_shared<RecordArguments>();
   const auto add = [&](const char* name, const char* help) {
     return addCellCommand(*command, arguments->target, name, help);

@@ -24,6 +24,9 @@ std::string Rerun::text() const {
   if (const auto& parting = comparison.parting) {
     return differs + fmt::format("first at step {} in {}", parting->step, parting->topic);
   }
+  if (first_missing && was_interrupted) {
+    return fmt::format("interrupted before step {}: identical up to there", *first_missing);
+  }
   if (first_missing) {
     return differs + fmt::format("ends before step {}: {}", *first_missing, result.at("reason").get<std::string>());
   }
@@ -49,6 +52,7 @@ Rerun rerun(const mcap::FileList& recording, const std::filesystem::path& folder
   {
     RunSession session(run, true);
     (void)follow(session);
+    made.was_interrupted = session.wasInterrupted();
     made.result = session.result();
     made.recording = session.info().recording;
   }

@@ -17,6 +17,7 @@ struct Rerun {
   Comparison comparison;                       // of the recording and its repetition
   std::uint64_t steps = 0;                     // of the recording
   std::optional<std::uint64_t> first_missing;  // step of the recording that the repetition has not
+  bool was_interrupted = false;                // the repetition, by Ctrl-C or a signal
   std::size_t decisions = 0;                   // that were repeated
   std::uint64_t hash = 0;                      // of the recording
   nlohmann::ordered_json result;               // of the repetition, as in its result.json

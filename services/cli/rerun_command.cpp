@@ -48,8 +48,7 @@ void tellRerun(const RerunRequest& request, ExitCode& exit_code) {
   const bool is_kept = !request.run.out.empty();
   RunRequest run = request.run;
   if (!is_kept) run.out = (folder / "rerun.mcap").string();
-  ExitCode ended = ExitCode::kOk;
-  const Rerun made = rerun(files, folder, run, [&](RunSession& session) { return ended = runToTheEnd(session); });
+  const Rerun made = rerun(files, folder, run, runToTheEnd);
   if (request.json) {
     std::puts(toText(toJson(made, files.string())).c_str());
   } else {
@@ -58,7 +57,7 @@ void tellRerun(const RerunRequest& request, ExitCode& exit_code) {
   }
   if (made.isIdentical()) fs::remove_all(folder);  // else it is there to look into
   exit_code = made.isIdentical() ? holes : ExitCode::kFailed;
-  if (ended == ExitCode::kInterrupted) exit_code = ended;
+  if (made.was_interrupted) exit_code = ExitCode::kInterrupted;
 }
 
 }  // namespace
@@ -73,7 +72,7 @@ void addRerunCommand(CLI::App& app, ExitCode& exit_code) {
       "asked for, controllers that were lost and came back, where it was stopped. These are repeated at their steps,\n"
       "with processes that live and without timers, and every payload of the loop is compared.\n"
       "Exit codes: 0 identical, 1 they differ: it names what differs of what recorded the two, then the first step and "
-      "topic.");
+      "topic;\n130 interrupted.");
   addRecording(*command, request->recording, "recording",
                "recording of a run in lockstep (MCAP); several, or a folder of them: read as one");
   command->add_option("--out", request->run.out, "file to record to (default: kept only when it differs)");

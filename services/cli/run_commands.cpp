@@ -147,6 +147,7 @@ void up(const RunRequest& request, ExitCode& exit_code) {
       session.follow([&](const auto& status) { line.show(progressText(status)); },
                      [](const msg::SimStatus& status) { return status.state() != msg::SIM_STATE_STARTING; });
   line.show("");
+  if (ended == ExitCode::kInterrupted) throw Error(ExitCode::kInterrupted, "interrupted before the run began");
   if (ended && *ended != ExitCode::kOk) {
     std::fprintf(stderr, "baton: the run did not start; the end of %s:\n%s", session.logFile().c_str(),
                  lastLines(session.logFile(), 8).c_str());

@@ -204,7 +204,13 @@ nlohmann::ordered_json RunSession::result() const {
   try {
     return readResult(info_.folder);
   } catch (const std::exception&) {
-    throw UnavailableError("the run ended without a result; the end of " + logFile() + ":\n" + lastLines(logFile(), 8));
+    const std::string last = lastLines(logFile(), 8);
+    if (last.empty()) {
+      throw UnavailableError(
+          "the run ended without a result, and its log, " + logFile() +
+          ", is empty: expected room on that disk, and enough files that a process may open (ulimit -n)");
+    }
+    throw UnavailableError("the run ended without a result; the end of " + logFile() + ":\n" + last);
   }
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <set>
 
+#include "runtime/paths.hpp"
+#include "support/live_run.hpp"
 #include "support/processes.hpp"
 #include "support/short_contact.hpp"
 
@@ -129,7 +131,9 @@ TEST(CommandLine, RefusesNumbersThatAreNone) {
                                                   {"sim", "rate", "1e-300"},
                                                   {"swap", "pd", "--at", "-5"},
                                                   {"swap", "pd", "--blend", "nan"},
-                                                  {"branch", "x.mcap", "--at-time", "nan"}}) {
+                                                  {"branch", "x.mcap", "--at-time", "nan"},
+                                                  {"branch", "x.mcap", "--at-time", "-1"},
+                                                  {"branch", "x.mcap", "--at-time", "1e300"}}) {
     const Finished refused = bench.baton(command);
     EXPECT_EQ(refused.exit_code, 2) << refused.out << refused.err;
     EXPECT_NE(refused.err.find(command.back()), std::string::npos) << refused.err;
@@ -182,6 +186,19 @@ TEST(CommandLine, ModelPrintsTheReportsDigits) {
   EXPECT_NE(text.find("2.3767"), std::string::npos) << text;
   EXPECT_NE(text.find("0.3439"), std::string::npos) << text;
   EXPECT_NE(text.find("0.9629"), std::string::npos) << text;
+}
+
+TEST(CommandLine, AsManyStepsAsCanBeAskedForAreWaitedFor) {
+  Bench bench;
+  const LiveRun run(bench, endlessContact(), {"--paused"});
+  ASSERT_EQ(bench.baton({"sim", "step", "5"}).exit_code, 0);
+  const int stepping = bench.start(
+      "baton", {"sim", "step", "18446744073709551615", "--domain", std::to_string(bench.domain())}, "step.log");
+  run.waitForStep(100);
+  const std::uint64_t at = bench.batonJson({"sim", "pause", "--json"}).at("step");
+  EXPECT_EQ(bench.wait(stepping), 0);
+  EXPECT_EQ(readFile(bench.folder() / "step.log"), "done at step " + std::to_string(at) + "\n");
+  EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "dds/typed.hpp"
 #include "mcap/reader.hpp"
+#include "runtime/paths.hpp"
 #include "support/live_run.hpp"
 #include "support/processes.hpp"
 #include "support/recordings.hpp"
@@ -351,6 +352,25 @@ TEST_P(EarlyCtrlC, LeavesNothingBehind) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Processes, EarlyCtrlC, ::testing::Values(1, 2, 3, 6, 9));
+
+TEST(Fault, CtrlCWhileARunIsStartedIsNoFailureOfIt) {
+  Bench bench;
+  for (const char* name : {"bin", "share"}) fs::create_directory(bench.folder() / name);
+  fs::copy_file(programFolder() / "baton", bench.folder() / "bin/baton");
+  fs::create_directory_symlink(deployFolder(), bench.folder() / "share/baton");
+  // One that gets nowhere. It inherits a SIGTERM that is held, and a SIGCONT follows that.
+  const std::string supervisor = bench.write(
+      "bin/baton-supervisor", "#!/bin/sh\nsleep 1000 &\ntrap 'kill -9 $!; exit 130' TERM CONT\n: >\"$0.began\"\nwait\n");
+  fs::permissions(supervisor, fs::perms::owner_all);
+  const int pid = bench.start(
+      bench.folder() / "bin/baton",
+      {"up", bench.write("live.yaml", endlessContact()), "--domain", std::to_string(bench.domain())}, "up.log");
+  ASSERT_TRUE(eventually([&] { return fs::exists(supervisor + ".began"); }));
+  kill(pid, SIGINT);
+  EXPECT_EQ(bench.wait(pid), 130);
+  EXPECT_NE(readFile(bench.folder() / "up.log").find("baton: interrupted before the run began\n"), std::string::npos)
+      << readFile(bench.folder() / "up.log");
+}
 
 TEST(Fault, AServiceThatCannotStartIsNamed) {
   const Bench bench;

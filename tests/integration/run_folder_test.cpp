@@ -1,8 +1,13 @@
 // What a run leaves open to others: its files, and what its processes inherit.
 #include <gtest/gtest.h>
 
+#include <map>
+#include <mutex>
 #include <set>
 
+#include "dds/typed.hpp"
+#include "runtime/cell.hpp"
+#include "runtime/service_options.hpp"
 #include "support/live_run.hpp"
 #include "support/short_contact.hpp"
 
@@ -53,11 +58,54 @@ TEST(RunFolder, ARecordingGoesWhereTheOperatorSays) {
   for (const char* wrong : {"a.txt", "/nowhere/a.mcap", "elsewhere/.mcap"}) {
     EXPECT_EQ(bench.baton({"record", "start", "--out", (bench.folder() / wrong).string()}).exit_code, 2) << wrong;
   }
+  EXPECT_EQ(bench.baton({"record", "start", "--out", bench.write("there.mcap", "")}).exit_code, 3);
   const nlohmann::json started =
       bench.batonJson({"record", "start", "--out", (elsewhere / "a.mcap").string(), "--json"});
   EXPECT_EQ(started.at("path"), (elsewhere / "a.mcap").string());
   EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
   EXPECT_EQ(bench.baton({"bag", "info", (elsewhere / "a.mcap").string()}).exit_code, 0);
+}
+
+/// The command line sends names that are in order. The recorder does not rely on that.
+TEST(RunFolder, TheRecorderTakesNamesOnlyAlsoFromWhoHasTheKey) {
+  const Bench bench;
+  const LiveRun run(bench, endlessContact(), {"--record-later"});
+  const std::string id = run.status.at("run");
+  dds::Participant participant({.domain = bench.domain(),
+                                .partition = "lab/" + id,
+                                .cell = "lab",
+                                .run = id,
+                                .service = std::string(kOperatorPrefix) + "test",
+                                .key = readKey((run.folder() / "key").string())});
+  std::mutex mutex;
+  std::map<std::uint64_t, msg::RecordReply> replies;
+  const dds::Reader<msg::RecordReply> reader(participant, dds::topics::kRecordReply,
+                                             [&](const msg::RecordReply& reply, const dds::RawSample&) {
+                                               const std::lock_guard lock(mutex);
+                                               replies[reply.request_id()] = reply;
+                                             });
+  dds::Writer<msg::RecordRequest> writer(participant, dds::topics::kRecordRequest);
+  ASSERT_TRUE(eventually([&] { return !writer.raw().matched().empty() && !reader.raw().matched().empty(); }));
+  std::uint64_t asked = 0;
+  for (const auto action : {msg::RECORD_START, msg::RECORD_SNAPSHOT}) {
+    for (const char* name : {"/tmp/authorized_keys", "/tmp/a.mcap", "../a.mcap", "a\n.mcap", ".mcap", "a.txt"}) {
+      msg::RecordRequest request;
+      request.request_id(++asked);
+      request.action(action);
+      request.path(name);
+      writer.write(request);
+      ASSERT_TRUE(eventually([&] {
+        const std::lock_guard lock(mutex);
+        return replies.contains(asked);
+      })) << name;
+      EXPECT_FALSE(replies.at(asked).accepted()) << name;
+    }
+  }
+  EXPECT_NE(std::string(replies.at(1).text().c_str()).find("expected the name of a file"), std::string::npos)
+      << replies.at(1).text().c_str();
+  EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
+  for (const auto& entry : fs::recursive_directory_iterator(bench.folder()))
+    EXPECT_NE(entry.path().extension(), ".mcap") << entry.path();
 }
 
 }  // namespace

@@ -54,8 +54,8 @@ void printText(const DiffRequest& request, const RecordingDiff& diff) {
     fmt::print("first       {}, {}\n", nameOf(*first), textOf(*diff.streams.at(*first).first));
   }
   if (const auto later = diff.laterBegin()) {
-    fmt::print("begins      A at step {}, B at step {}: --from-step {} compares what both have\n", *diff.first_step[0],
-               *diff.first_step[1], *later);
+    fmt::print("begins      A at step {}, B at step {}: --from-step {} leaves out what one alone has\n",
+               *diff.first_step[0], *diff.first_step[1], *later);
   }
   if (!diff.left_out.empty()) {
     fmt::print("left out    {}\n", escaped(fmt::format("{}", fmt::join(diff.left_out, ", "))));
