@@ -3,6 +3,8 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <atomic>
+#include <memory>
 
 #include "base/text.hpp"
 
@@ -15,11 +17,15 @@ bool isOfCell(const dds::DiscoveredWriter& writer, const std::string& partition)
                      [&](const std::string& theirs) { return fnmatch(theirs.c_str(), partition.c_str(), 0) == 0; });
 }
 
-bool isAdmitted(Service& service, const dds::DiscoveredWriter& writer) {
+/// @param told  how many writers have been told of; a flood of them must not flood the recording.
+bool isAdmitted(Service& service, const dds::DiscoveredWriter& writer, std::atomic<int>& told) {
+  constexpr int kMaxTold = 20;
   if (hasControlCharacters(writer.topic) || hasControlCharacters(writer.type)) {
-    service.event(msg::SEVERITY_WARNING, "stranger",
-                  "a writer of " + dds::toString(writer.guid) +
-                      " is not recorded: control characters in the name of its topic or type");
+    if (told++ < kMaxTold) {
+      service.event(msg::SEVERITY_WARNING, "stranger",
+                    "a writer of " + dds::toString(writer.guid) +
+                        " is not recorded: control characters in the name of its topic or type");
+    }
     return false;
   }
   const dds::TopicFacts* facts = dds::topics::called(writer.topic);
@@ -54,9 +60,9 @@ ReadingRules rulesOfRun(Service& service) {
        {dds::topics::kServiceStatus.name, dds::topics::kParameterStatus.name, dds::topics::kParameterReply.name}) {
     rules.awaited.insert(name);
   }
-  rules.is_wanted = [&service,
-                     partition = service.options().participant().partition](const dds::DiscoveredWriter& writer) {
-    return isOfCell(writer, partition) && isAdmitted(service, writer);
+  rules.is_wanted = [&service, partition = service.options().participant().partition,
+                     told = std::make_shared<std::atomic<int>>(0)](const dds::DiscoveredWriter& writer) {
+    return isOfCell(writer, partition) && isAdmitted(service, writer, *told);
   };
   rules.filter_for = [&service](const std::string& topic) {
     const dds::TopicFacts* facts = dds::topics::called(topic);

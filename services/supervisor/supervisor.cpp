@@ -189,6 +189,8 @@ void Supervisor::childEnded(Child& child, const Child::End& end) {
     judgeWhenBegun(child, end, isRunning(kPlantName) ? kNewsLooks : 0);
   } else if (stage_ == Stage::kClosingRecording) {
     endedWhileClosing(child, end);
+  } else if (end.by_signal && end.value == SIGKILL && !has_killed_ && child.name() != kRecorderName) {
+    endedWhileClosing(child, end);  // somebody else killed it
   }
   if (!anyRunning()) service_.stop();
 }
@@ -206,14 +208,17 @@ void Supervisor::endedWhileClosing(const Child& child, const Child::End& end) {
   }
 }
 
-/// An exit is heard of at once, that the run has begun a little later, by DDS.
+/// The kernel says at once that a part has ended. That the run had begun comes by DDS, a little later.
 void Supervisor::judgeWhenBegun(Child& child, const Child::End& end, int looks) {
   if (startup_s_ >= 0.0 || looks == 0) return childFailed(child, end);
   auto timer = std::make_shared<boost::asio::steady_timer>(service_.executor(), kNewsEvery);
   timer->async_wait([this, timer, &child, end, looks](const boost::system::error_code& error) {
     if (error) return;
-    if (stage_ == Stage::kRunning) judgeWhenBegun(child, end, looks - 1);
-    if (stage_ == Stage::kClosingRecording) endedWhileClosing(child, end);
+    if (stage_ == Stage::kRunning) {
+      judgeWhenBegun(child, end, looks - 1);
+    } else if (stage_ == Stage::kClosingRecording || child.name() != kRecorderName) {
+      endedWhileClosing(child, end);
+    }
   });
 }
 
@@ -327,6 +332,7 @@ void Supervisor::giveUpWaiting() {
         spdlog::warn("killing service={} pid={}", child->name(), child->pid());
         child->signal(SIGCONT);
         child->signal(SIGKILL);
+        has_killed_ = true;
       }
       if (isRunning(kRecorderName) && !std::exchange(has_spared_recorder_, true))
         enter(Stage::kStopping, kFilePatience);

@@ -73,6 +73,7 @@ class Supervisor {
   boost::asio::steady_timer start_limit_;
   boost::asio::steady_timer patience_;
   bool has_spared_recorder_ = false;
+  bool has_killed_ = false;  // who did not end when asked to
   Stage stage_ = Stage::kRunning;
   ExitCode exit_code_ = ExitCode::kOk;
   std::string reason_;
