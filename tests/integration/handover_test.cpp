@@ -96,7 +96,9 @@ TEST(Handover, OptionsChooseBlendAndHelpAndTheMeterTellsTheDifference) {
   EXPECT_EQ(soft.at("report").at("steps"), 200) << "as long as the scenario's blend at least";
   EXPECT_GT(std::abs(soft.at("report").at("blend_energy_J").get<double>()), 0.0);
 
-  ASSERT_TRUE(bench.batonJson({"swap", "tracking", "--json"}).at("done"));
+  const nlohmann::json back = bench.batonJson({"swap", "tracking", "--json"});
+  ASSERT_TRUE(back.at("done")) << back;
+  run.waitForStep(back.at("at_step").get<std::uint64_t>() + 4000);  // at rest again, or the torque still changes
   const nlohmann::json hard = bench.batonJson({"swap", "sagging", "--hard", "--json"});
   ASSERT_TRUE(hard.at("done")) << hard;
   EXPECT_EQ(hard.at("blend_steps"), 0);

@@ -445,10 +445,15 @@ TEST(Traffic, ARunThatIsRecordedFromOutsideIsTheSameRun) {
 
 TEST(Traffic, OfARunUnderWayTheLoopIsRecordedFromWhereItIs) {
   Bench bench;
-  const LiveRun run(bench, endlessContact());
+  const LiveRun run(bench, endlessContact("rate: 1\n"));
   run.waitForStep(200);
-  Recorder recorder(bench, {"--interface", "lo", "--topics", "plant_state,reference", "--max-messages", "100"});
-  const Json result = recorder.result();
+  Recorder recorder(bench, {"--interface", "lo", "--topics", "plant_state,reference"});
+  ASSERT_TRUE(eventually([&] {
+    const std::string log = recorder.log();
+    return log.find("topic=plant_state") != std::string::npos && log.find("topic=reference") != std::string::npos;
+  }));
+  run.waitForStep(bench.batonJson({"status", "--json"}).at("step").get<std::uint64_t>() + 200);
+  const Json result = recorder.end();
   EXPECT_EQ(result.at("exit_code"), 0) << result;
   EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
   const mcap::Reader reader(recorder.file());
