@@ -87,8 +87,8 @@ rtps::Locator_t locatorOf(const std::string& address, std::uint32_t port = 0) {
 /// Where a participant announces itself and listens for others. Each discovers each: in one group, the work would grow
 /// with the square of all processes of all cells. So the members of a cell listen in their group. All announce
 /// themselves in the group of RTPS as well, where every other program listens, and those of ours that read or write in
-/// other cells; who finds a member there answers it directly. (Nobody listens in both groups: Fast DDS binds one socket
-/// a port, to the first group.) Two cells with the same group find each other, which is only slower.
+/// other cells; who finds a member there answers it directly. (None listens in both groups: Fast DDS binds one socket a
+/// port, to the first group.) Two cells with the same group find each other, which is only slower.
 void discoverIn(const ParticipantOptions& options, const std::vector<std::string>& addresses,
                 DomainParticipantQos& qos) {
   const std::uint32_t port = 7400 + 250 * static_cast<std::uint32_t>(options.domain);  // RTPS 2.5, 9.6.2.3

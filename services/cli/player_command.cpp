@@ -150,7 +150,7 @@ void addPlayerCommand(CLI::App& app, ExitCode& exit_code) {
   command->require_subcommand(1);
   command->footer(
       "Exit codes: 0 done, 1 refused or cut short, 2 wrong input, or several replays go on and none is named,\n"
-      "3 nothing is replayed there, it does not answer, or it is somebody else's.");
+      "3 nothing is replayed there, it does not answer, or it is another user's.");
   const auto addSub = [&](const char* name, const char* help) {
     CLI::App* sub = addCellCommand(*command, arguments->target, name, help);
     sub->add_option("--run", arguments->run, "its run, where several go on in a cell");

@@ -190,7 +190,7 @@ void Supervisor::childEnded(Child& child, const Child::End& end) {
   } else if (stage_ == Stage::kClosingRecording) {
     endedWhileClosing(child, end);
   } else if (end.by_signal && end.value == SIGKILL && !has_killed_ && child.name() != kRecorderName) {
-    endedWhileClosing(child, end);  // somebody else killed it
+    endedWhileClosing(child, end);  // by no signal of ours
   }
   if (!anyRunning()) service_.stop();
 }

@@ -41,7 +41,7 @@ TEST(Kills, EveryRunEndsAsToldAndRepeatsBitForBit) {
 }
 
 /// When Ctrl-C comes: a file is there, with this text. After the death of the victim the run's own exit code says what
-/// became of it, not that somebody wants to end.
+/// became of it, not that an end was asked for.
 struct Moment {
   const char* name;
   const char* file;
@@ -96,7 +96,7 @@ class Liar {
     }
     if (!writer_->raw().matched().empty()) matched_.insert(run_);
   }
-  /// Runs in which somebody would have heard it.
+  /// Runs in which it had readers.
   [[nodiscard]] std::size_t runs() const { return matched_.size(); }
 
  private:
