@@ -104,7 +104,7 @@ std::string doneText(msg::RecordAction action, std::uint64_t last_before) {
 std::string nameOf(const std::string& out, const RunInfo& run) {
   if (out.empty()) return "";
   const std::filesystem::path path = outputPath(out).lexically_normal();
-  const std::string name = path.filename().string();
+  std::string name = path.filename().string();
   if (std::filesystem::exists(path))
     throw UnavailableError("--out " + path.string() + " is there already: choose another name");
   if (!isFileName(name, ".mcap")) throw UsageError("--out " + printable(out) + ": expected a file that ends in .mcap");

@@ -185,12 +185,11 @@ msg::BatonStatus Supervisor::lastBatonStatus() {
 
 void Supervisor::childEnded(Child& child, const Child::End& end) {
   spdlog::info("ended service={} pid={} {}", child.name(), child.pid(), end.text());
+  const bool is_killed_by_others = end.by_signal && end.value == SIGKILL && !has_killed_;
   if (stage_ == Stage::kRunning) {
     judgeWhenBegun(child, end, isRunning(kPlantName) ? kNewsLooks : 0);
-  } else if (stage_ == Stage::kClosingRecording) {
+  } else if (stage_ == Stage::kClosingRecording || (is_killed_by_others && child.name() != kRecorderName)) {
     endedWhileClosing(child, end);
-  } else if (end.by_signal && end.value == SIGKILL && !has_killed_ && child.name() != kRecorderName) {
-    endedWhileClosing(child, end);  // by no signal of ours
   }
   if (!anyRunning()) service_.stop();
 }

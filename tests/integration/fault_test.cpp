@@ -359,8 +359,9 @@ TEST(Fault, CtrlCWhileARunIsStartedIsNoFailureOfIt) {
   fs::copy_file(programFolder() / "baton", bench.folder() / "bin/baton");
   fs::create_directory_symlink(deployFolder(), bench.folder() / "share/baton");
   // One that gets nowhere. It inherits a SIGTERM that is held, and a SIGCONT follows that.
-  const std::string supervisor = bench.write(
-      "bin/baton-supervisor", "#!/bin/sh\nsleep 1000 &\ntrap 'kill -9 $!; exit 130' TERM CONT\n: >\"$0.began\"\nwait\n");
+  const std::string supervisor =
+      bench.write("bin/baton-supervisor",
+                  "#!/bin/sh\nsleep 1000 &\ntrap 'kill -9 $!; exit 130' TERM CONT\n: >\"$0.began\"\nwait\n");
   fs::permissions(supervisor, fs::perms::owner_all);
   const int pid = bench.start(
       bench.folder() / "bin/baton",

@@ -97,6 +97,7 @@ Measurement measureCells(const Case& one, int steps, Programs& programs) {
   const std::string prefix = "bench-" + std::to_string(getpid()) + "-";
   const auto cellName = [&](int index) { return prefix + std::to_string(index); };
   std::vector<std::string> cells;
+  cells.reserve(static_cast<std::size_t>(one.cells));
   for (int i = 0; i < one.cells; ++i) cells.push_back(cellName(i));
   Starter starter(programs.domain(), prefix + "*", cells);
   for (int i = 0; i < one.cells; ++i) {

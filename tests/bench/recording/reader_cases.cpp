@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMaxSeek_ms = 5.0;
 constexpr double kMinVerify = 300.0;          // MB of file in a second
-constexpr double kMaxSizeGrowth_MB = 8.0;         // of the process, where the file is ten times as large
+constexpr double kMaxSizeGrowth_MB = 8.0;     // of the process, where the file is ten times as large
 constexpr std::uint64_t kBytesASample = 151;  // what three messages of the recording take in the file
 
 std::filesystem::path makeRecording(const std::filesystem::path& folder, const std::string& name, double megabytes) {

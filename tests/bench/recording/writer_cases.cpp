@@ -9,9 +9,9 @@
 namespace baton::bench {
 namespace {
 
-constexpr double kMinMessages = 400e3;   // of 100 B, in a second
-constexpr double kMinMegabytes = 500.0;  // of 10 KiB, in a second
-constexpr double kMaxFileGrowth_MB = 4.0;    // of the process while a file grows by all that is written
+constexpr double kMinMessages = 400e3;     // of 100 B, in a second
+constexpr double kMinMegabytes = 500.0;    // of 10 KiB, in a second
+constexpr double kMaxFileGrowth_MB = 4.0;  // of the process while a file grows by all that is written
 
 /// Numbers as of a robot: four bytes of each eight are noise, the others change slowly. Longer than a chunk, so that no
 /// compressor finds a message again.
