@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "dds/environment.hpp"
 #include "dds/fastdds.hpp"
 #include "dds/hash.hpp"
@@ -45,7 +46,9 @@ std::optional<Peer> decodePeer(const std::string& text, const GuidPrefix& prefix
   std::getline(lines, peer.run);
   std::getline(lines, peer.service);
   lines >> peer.started_ns;
-  return lines.fail() ? std::nullopt : std::optional(peer);
+  // They are shown in logs and on terminals. Ours have no such characters.
+  const std::string names = peer.cell + peer.run + peer.service;
+  return lines.fail() || escaped(names) != names ? std::nullopt : std::optional(peer);
 }
 
 /// BATON_LOSE_ONE_IN=N in the environment: of N datagrams sent one, on average, is thrown away, to show what a bad
@@ -308,6 +311,10 @@ std::optional<Peer> Participant::peer(const GuidPrefix& prefix) const {
   const std::lock_guard lock(impl_->mutex);
   const auto found = impl_->peers.find(prefix);
   return found == impl_->peers.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<Peer> Participant::member(const GuidPrefix& prefix) const {
+  return isMember(prefix) ? peer(prefix) : std::nullopt;
 }
 
 std::optional<Peer> Participant::stranger(const GuidPrefix& prefix) const {

@@ -13,7 +13,7 @@ std::optional<dds::Peer> Barrier::eldest(const std::string& service) const {
   std::optional<dds::Peer> eldest;
   for (const Requirement& requirement : requirements_) {
     for (const dds::GuidPrefix& prefix : requirement.matched()) {
-      const auto peer = participant_.peer(prefix);
+      const auto peer = participant_.member(prefix);
       if (peer && peer->service == service && (!eldest || isElder(*peer, *eldest))) eldest = peer;
     }
   }
@@ -25,7 +25,7 @@ std::string Barrier::missing() const {
   for (const Requirement& requirement : requirements_) {
     std::set<std::string> present;
     for (const dds::GuidPrefix& prefix : requirement.matched()) {
-      if (const auto peer = participant_.peer(prefix)) present.insert(peer->service);
+      if (const auto peer = participant_.member(prefix)) present.insert(peer->service);
     }
     std::string absent;
     for (const std::string& peer : requirement.peers) {

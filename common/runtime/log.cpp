@@ -6,6 +6,7 @@
 #include <deque>
 #include <fstream>
 
+#include "base/text.hpp"
 #include "dds/participant.hpp"
 
 namespace baton {
@@ -23,7 +24,7 @@ std::string lastLines(const std::filesystem::path& log, std::size_t count) {
   std::ifstream stream(log);
   std::deque<std::string> lines;
   for (std::string line; std::getline(stream, line);) {
-    lines.push_back("  " + line + "\n");
+    lines.push_back("  " + escaped(line) + "\n");  // the DDS library writes names of others as they are
     if (lines.size() > count) lines.pop_front();
   }
   std::string text;
@@ -39,7 +40,7 @@ std::string lastError(const std::filesystem::path& log) {
     if (line.find(" error ") != std::string::npos || line.starts_with("baton-")) error = line;
     last = line;
   }
-  return error.empty() ? last : error;
+  return escaped(error.empty() ? last : error);
 }
 
 }  // namespace baton

@@ -63,7 +63,7 @@ std::uint64_t CellClient::newRequestId() {
 
 bool CellClient::isMatchedWith(const std::set<dds::GuidPrefix>& matched, const std::string& service) const {
   for (const dds::GuidPrefix& prefix : matched) {
-    if (const auto peer = participant_.peer(prefix); peer && peer->service == service) return true;
+    if (const auto peer = participant_.member(prefix); peer && peer->service == service) return true;
   }
   return false;
 }

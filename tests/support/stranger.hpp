@@ -12,9 +12,13 @@ namespace baton::test {
 
 class Stranger {
  public:
-  /// @param claims  the service that it says it is.
-  Stranger(int domain, const std::string& run, const std::string& claims)
-      : participant_({.domain = domain, .partition = "lab/" + run, .cell = "lab", .run = run, .service = claims}) {}
+  /// @param claims  the service that it says it is.  @param place  of which run it is in the partition; "*": of all.
+  Stranger(int domain, const std::string& run, const std::string& claims, const std::string& place = "")
+      : participant_({.domain = domain,
+                      .partition = "lab/" + (place.empty() ? run : place),
+                      .cell = "lab",
+                      .run = run,
+                      .service = claims}) {}
 
   /// On a writer that is made when it is first used: what comes before it is matched is heard by nobody.
   template <class T>

@@ -120,6 +120,35 @@ TEST(ParticipantTest, PeersSayWhoTheyAreAndLeave) {
   EXPECT_FALSE(find("plant"));
 }
 
+/// Names are shown in logs and on terminals.
+TEST(ParticipantTest, AProcessWhoseNameWouldChangeATerminalIsNoneOfOurs) {
+  Signal signal;
+  Participant watcher(memberOptions("watcher", "cell"), [&](const Peer&) { signal.notify(); });
+  const Participant wrong(memberOptions("a\x1b[2J", "cell")), broken(memberOptions("\xff", "cell"));
+  const Participant right(memberOptions("right", "cell"));
+  const auto isRight = [](const Peer& peer) { return peer.service == "right"; };
+  ASSERT_TRUE(signal.waitUntil([&] { return std::ranges::any_of(watcher.peers(), isRight); }));
+  for (const Peer& peer : watcher.peers()) EXPECT_TRUE(isRight(peer)) << peer.service;
+}
+
+TEST(ParticipantTest, AMemberHasTheKeyWhicheverRunItNames) {
+  Signal signal;
+  const RunKey key = RunKey::fresh();
+  const auto options = [&](const std::string& service, bool has_key, const std::string& run) {
+    ParticipantOptions result = memberOptions(service, "cell");
+    if (has_key) result.key = key;
+    if (!run.empty()) result.run = run;
+    return result;
+  };
+  Participant plant(options("plant", true, ""), [&](const Peer&) { signal.notify(); });
+  const Participant one(options("one", true, "")), other(options("other", false, "another-run"));
+  const auto prefix = [](const Participant& participant) { return participant.self().prefix; };
+  ASSERT_TRUE(signal.waitUntil([&] { return plant.peer(prefix(one)) && plant.peer(prefix(other)); }));
+  EXPECT_TRUE(plant.member(prefix(one)));
+  EXPECT_FALSE(plant.member(prefix(other))) << "it is no stranger, since it claims nothing of ours";
+  EXPECT_FALSE(plant.stranger(prefix(other)));
+}
+
 TEST(ParticipantTest, CellsDiscoverTheirOwnMembersAndWhoObservesAnyOfThem) {
   Signal signal;
   const auto member = [&](const std::string& cell) {
