@@ -1,6 +1,7 @@
 #include "runtime/cell.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -158,7 +159,7 @@ dds::ParticipantOptions operatorOf(const RunInfo& info) {
           .run = info.run,
           .service = kOperatorPrefix + std::to_string(getpid()),
           .transport = info.transport,
-          .key = fs::exists(file) ? std::optional(readKey(file)) : std::nullopt,
+          .key = !info.folder.empty() && fs::exists(file) ? std::optional(readKey(file)) : std::nullopt,
           .clock = info.clock};
 }
 
@@ -207,6 +208,19 @@ fs::path runFolder(const std::string& run) {
 
 fs::path replayFolder(int domain, const std::string& cell, const std::string& run) {
   return stateFolder() / "replays" / std::to_string(domain) / cell / run;
+}
+
+std::set<std::string> replaysOfThisUser(int domain, const std::string& cell) {
+  std::set<std::string> names;
+  std::error_code there_is_none;
+  for (const auto& entry : fs::directory_iterator(replayFolder(domain, cell, ""), there_is_none)) {
+    const int folder = open(entry.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder < 0) continue;
+    const bool is_held = flock(folder, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    if (is_held) names.insert(entry.path().filename().string());
+    close(folder);
+  }
+  return names;
 }
 
 void makePrivateFolder(const fs::path& folder) {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,8 @@ class CellLock {
 [[nodiscard]] std::filesystem::path runFolder(const std::string& run);
 /// Where a replay has its key while it lives. Nothing is created.
 [[nodiscard]] std::filesystem::path replayFolder(int domain, const std::string& cell, const std::string& run);
+/// The names of those that live: each holds a lock (flock) on its folder.
+[[nodiscard]] std::set<std::string> replaysOfThisUser(int domain, const std::string& cell);
 /// Makes it when it is missing, for its owner alone.
 void makePrivateFolder(const std::filesystem::path& folder);
 

@@ -8,7 +8,10 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 
 #include "base/text.hpp"
 #include "cell_target.hpp"
@@ -30,41 +33,61 @@ struct PlayerArguments {
 
 double inSeconds(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-9; }
 
+/// Whether it is a replay of this user's.
+bool hasKey(const RunInfo& place) {
+  std::error_code is_hidden;
+  return std::filesystem::exists(keyFile(place), is_hidden);
+}
+
 struct Replay {
   RunInfo place;
   msg::ReplayStatus status;
 };
 
+bool isGoingOn(const msg::ReplayStatus& status) { return status.state() != msg::REPLAY_FINISHED; }
+
+/// By what discovery tells. Any process can say that it is a replay, so only where there is none of this user's.
+std::set<std::string> replaysOfOthers(const RunInfo& place) {
+  CellClient observer(place);
+  std::ignore = observer.collect<msg::ReplayStatus>(
+      dds::topics::kReplayStatus, [](const auto& all) { return std::ranges::any_of(all, isGoingOn); },
+      CellClient::kStatusPatience);
+  std::set<std::string> runs;
+  for (const dds::Peer& peer : observer.peers()) {
+    const bool is_meant = place.run == "*" || peer.run == place.run;
+    if (peer.service == kReplayer && peer.cell == place.cell && is_meant && isFileName(peer.run, "")) {
+      runs.insert(peer.run);
+    }
+  }
+  return runs;
+}
+
 /// The replay that is meant. Throws UnavailableError when there is none, UsageError when there are several.
 Replay findReplay(const PlayerArguments& arguments) {
-  const CellTarget& target = arguments.target;
   RunInfo place;
-  place.cell = target.cell;
+  place.cell = arguments.target.cell;
   place.run = arguments.run.empty() ? "*" : arguments.run;
-  place.domain = target.domain;
-  CellClient observer(place);
-  const auto isGoingOn = [](const std::vector<msg::ReplayStatus>& all) {
-    return !all.empty() && all.back().state() != msg::REPLAY_FINISHED;
-  };
-  const auto statuses =
-      observer.collect<msg::ReplayStatus>(dds::topics::kReplayStatus, isGoingOn, CellClient::kStatusPatience);
-  if (!isGoingOn(statuses)) {
+  place.domain = arguments.target.domain;
+  std::set<std::string> runs = replaysOfThisUser(place.domain, place.cell);
+  if (place.run != "*") std::erase_if(runs, [&](const std::string& run) { return run != place.run; });
+  if (runs.empty()) runs = replaysOfOthers(place);
+  if (runs.size() > 1) {
+    throw UsageError(fmt::format("expected to be told which replay of cell {} is meant: --run {}", place.cell,
+                                 fmt::join(runs, ", --run ")));
+  }
+  std::optional<msg::ReplayStatus> status;
+  if (!runs.empty()) {
+    place.run = *runs.begin();
+    place.folder = replayFolder(place.domain, place.cell, place.run).string();
+    status = CellClient(place).latest(dds::topics::kReplayStatus, CellClient::kStatusPatience);
+  }
+  if (!status || !isGoingOn(*status)) {
     throw UnavailableError(fmt::format(
         "nothing is replayed in cell {} of domain {}{}: start it with `baton replay FILE`, or say --cell, --domain and "
         "--run of the one that is meant",
         place.cell, place.domain, arguments.run.empty() ? "" : " as run " + arguments.run));
   }
-  std::string runs;
-  for (const dds::Peer& peer : observer.peers()) {
-    if (peer.service != kReplayer || peer.cell != place.cell || !isFileName(peer.run, "")) continue;
-    if (!arguments.run.empty() && peer.run != arguments.run) continue;
-    runs += (runs.empty() ? "" : ", ") + ("--run " + peer.run);
-    place.run = peer.run;
-  }
-  if (runs.find(',') != std::string::npos) {
-    throw UsageError("expected to be told which replay of cell " + place.cell + " is meant: " + runs);
-  }
-  return {.place = place, .status = statuses.back()};
+  return {.place = place, .status = *status};
 }
 
 void tell(const PlayerArguments& arguments) {
@@ -93,12 +116,12 @@ void tell(const PlayerArguments& arguments) {
               << '\n';
     return;
   }
-  std::string text = fmt::format("{} in cell {}, run {}\n{} at {:.6f} of {:.6f} s, {}", status.path().c_str(),
+  std::string text = fmt::format("{} in cell {}, run {}\n{} at {:.6f} of {:.6f} s, {}", escaped(status.path().c_str()),
                                  place.cell, place.run, toString(status.state()), position_s, duration_s,
                                  status.rate() > 0.0 ? fmt::format("rate {:g}", status.rate()) : "as fast as possible");
   if (status.passes() != 1) text += fmt::format(", pass {}", status.pass());
   if (status.passes() > 1) text += fmt::format(" of {}", status.passes());
-  if (status.waiting_for().size() > 0) text += fmt::format(", waits for {}", status.waiting_for().c_str());
+  if (status.waiting_for().size() > 0) text += fmt::format(", waits for {}", escaped(status.waiting_for().c_str()));
   text += fmt::format(
       "\n{} messages sent, of {} in a pass; lateness p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us, {} "
       "overdue\n",
@@ -108,10 +131,8 @@ void tell(const PlayerArguments& arguments) {
 }
 
 void ask(const PlayerArguments& arguments, ExitCode& exit_code) {
-  auto [place, status] = findReplay(arguments);
-  place.folder = replayFolder(place.domain, place.cell, place.run).string();
-  std::error_code is_hidden;
-  if (!std::filesystem::exists(keyFile(place), is_hidden)) {
+  const auto [place, status] = findReplay(arguments);
+  if (!hasKey(place)) {
     throw UnavailableError("run " + place.run + " of cell " + place.cell +
                            " takes requests from the user who started it, with the same BATON_HOME");
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "dds/run_key.hpp"
@@ -12,7 +13,7 @@ namespace baton {
 /// There for as long as a replay of that name lives.
 class OwnKey {
  public:
-  /// Throws UnavailableError when it cannot be written or read.
+  /// Throws UnavailableError when it cannot be written, read or locked.
   OwnKey(int domain, const std::string& cell, const std::string& run);
   ~OwnKey();
   OwnKey(const OwnKey&) = delete;
@@ -21,9 +22,11 @@ class OwnKey {
   [[nodiscard]] const dds::RunKey& key() const { return key_; }
 
  private:
+  [[nodiscard]] bool holdsFolder();
+
   std::filesystem::path folder_;
   dds::RunKey key_;
-  mcap::Descriptor in_use_;  // its lock is shared by all replays of that name
+  std::optional<mcap::Descriptor> in_use_;  // its lock is shared by all replays of that name
 };
 
 }  // namespace baton

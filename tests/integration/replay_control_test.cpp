@@ -189,6 +189,35 @@ TEST_F(ReplayControl, ObeysItsUserAlone) {
   EXPECT_FALSE(std::filesystem::exists(key.parent_path()));
 }
 
+/// Any process can say that it is a replay, of this name or another one, and what a replay says.
+TEST_F(ReplayControl, WhoOnlyClaimsToBeAReplayIsNone) {
+  start({writeNumbers(bench_, 1000), "--paused"});
+  ASSERT_TRUE(stands("paused"));
+  const auto claimed = [&](const std::string& run) {
+    return dds::ParticipantOptions{
+        .domain = bench_.domain(), .partition = "replay/" + run, .cell = "replay", .run = run, .service = "replayer"};
+  };
+  dds::Participant same(claimed("test")), another(claimed("another"));
+  dds::Writer<msg::ReplayStatus> liar(same, dds::topics::kReplayStatus), stage(another, dds::topics::kReplayStatus);
+  msg::ReplayStatus status;
+  status.state(msg::REPLAY_FINISHED);
+  status.path("\x1b[2J");
+  liar.write(status);
+  status.state(msg::REPLAY_PLAYING);
+  stage.write(status);
+  const nlohmann::json told = player({"status"});
+  EXPECT_EQ(told.at("run"), "test") << told;
+  EXPECT_EQ(told.at("state"), "paused") << told;
+  EXPECT_EQ(player({"step", "3"}).at("messages"), 3);
+
+  const Finished theirs = bench_.baton({"player", "status", "--run", "another"});
+  EXPECT_EQ(theirs.exit_code, 0) << "a replay without a key can be looked at: " << theirs.err;
+  EXPECT_EQ(theirs.out.find('\x1b'), std::string::npos) << theirs.out;
+  EXPECT_EQ(bench_.baton({"player", "stop", "--run", "another"}).exit_code, 3);
+  player({"stop"});
+  EXPECT_EQ(bench_.wait(pid_), 0);
+}
+
 TEST_F(ReplayControl, SeeksWhereItIsToldBothWays) {
   Listener listener(bench_, "listener");
   start({writeNumbers(bench_, 20'000), "--paused", "--wait-for-readers", "listener", "--from", "1"});
