@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "end_verdict.hpp"
 #include "result.hpp"
 #include "runtime/log.hpp"
 #include "runtime/paths.hpp"
@@ -185,26 +186,28 @@ msg::BatonStatus Supervisor::lastBatonStatus() {
 
 void Supervisor::childEnded(Child& child, const Child::End& end) {
   spdlog::info("ended service={} pid={} {}", child.name(), child.pid(), end.text());
-  const bool is_killed_by_others = end.by_signal && end.value == SIGKILL && !has_killed_;
   if (stage_ == Stage::kRunning) {
     judgeWhenBegun(child, end, isRunning(kPlantName) ? kNewsLooks : 0);
-  } else if (stage_ == Stage::kClosingRecording || (is_killed_by_others && child.name() != kRecorderName)) {
-    endedWhileClosing(child, end);
+  } else {
+    endedAfterTheRun(child, end);
   }
   if (!anyRunning()) service_.stop();
 }
 
 /// On a busy machine the rest of the run may be over before the death of a part is heard of: it has a name all the
 /// same.
-void Supervisor::endedWhileClosing(const Child& child, const Child::End& end) {
+void Supervisor::endedAfterTheRun(const Child& child, const Child::End& end) {
   const std::string& name = child.name();
-  const bool is_in_order = !end.by_signal && end.value == 0;
-  if (name == kRecorderName) {
-    if (!is_in_order) fail(ExitCode::kFailed, "the recording is not complete");
-    stopChildren();
-  } else if (!is_in_order && !asked_to_end_.contains(name) && !scenario_.wantsFaultOf(name)) {
-    fail(ExitCode::kFailed, endedInTheMiddle(name, end));
+  const bool is_recorder = name == kRecorderName;
+  const bool is_expected = asked_to_end_.contains(name) || scenario_.wantsFaultOf(name);
+  switch (endVerdict(end, is_recorder, stage_ == Stage::kStopping, has_killed_)) {
+    case EndVerdict::kInOrder: break;
+    case EndVerdict::kIncomplete: fail(ExitCode::kFailed, "the recording is not complete"); break;
+    case EndVerdict::kDied:
+      if (!is_expected) fail(ExitCode::kFailed, endedInTheMiddle(name, end));
+      break;
   }
+  if (is_recorder && stage_ == Stage::kClosingRecording) stopChildren();
 }
 
 /// The kernel says at once that a part has ended. That the run had begun comes by DDS, a little later.
@@ -213,11 +216,8 @@ void Supervisor::judgeWhenBegun(Child& child, const Child::End& end, int looks) 
   auto timer = std::make_shared<boost::asio::steady_timer>(service_.executor(), kNewsEvery);
   timer->async_wait([this, timer, &child, end, looks](const boost::system::error_code& error) {
     if (error) return;
-    if (stage_ == Stage::kRunning) {
-      judgeWhenBegun(child, end, looks - 1);
-    } else if (stage_ == Stage::kClosingRecording || child.name() != kRecorderName) {
-      endedWhileClosing(child, end);
-    }
+    if (stage_ == Stage::kRunning) return judgeWhenBegun(child, end, looks - 1);
+    endedAfterTheRun(child, end);
   });
 }
 

@@ -40,7 +40,7 @@ class Supervisor {
   void start(const std::string& role, const std::string& name, const std::string& law);
   void childEnded(Child& child, const Child::End& end);
   void judgeWhenBegun(Child& child, const Child::End& end, int looks);
-  void endedWhileClosing(const Child& child, const Child::End& end);
+  void endedAfterTheRun(const Child& child, const Child::End& end);
   void childFailed(Child& child, const Child::End& end);
   void judge(const msg::SwapOutcome& swap);
   void endForThePlant();
