@@ -8,8 +8,6 @@
 namespace baton {
 namespace {
 
-constexpr std::size_t kMaxTold = 20;  // strangers that are told of; a flood of them must not flood the recording
-
 bool isOperator(std::string_view service) { return service.starts_with(kOperatorPrefix); }
 
 bool isController(std::string_view service) {
@@ -84,7 +82,7 @@ void Admission::met(const dds::Peer& stranger) {
 void Admission::tellOnce(const dds::GuidPrefix& prefix, const std::string& text) {
   {
     const std::lock_guard lock(mutex_);
-    if (told_.size() >= kMaxTold || !told_.insert(prefix).second) return;
+    if (told_.size() >= kMaxStrangersTold || !told_.insert(prefix).second) return;
   }
   tell_(text);
 }

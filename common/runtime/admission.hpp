@@ -15,6 +15,9 @@
 
 namespace baton {
 
+/// How many an event is written of: a flood of them must not flood the recording.
+inline constexpr std::size_t kMaxStrangersTold = 20;
+
 /// Whether a service of that name has anything to say there. The supervisor speaks for services that have died.
 [[nodiscard]] bool mayWrite(dds::WrittenBy who, std::string_view service);
 

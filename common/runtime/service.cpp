@@ -118,7 +118,7 @@ void Service::peerJoined(const dds::Peer& peer) {
   if (peer.is_stranger) return admission_.met(peer);
   announcer_.greet();
   checkBarrier();
-  if (!gave_way_ && isRival(peer)) {
+  if (!gave_way_ && isRival(peer) && rivals_told_++ < kMaxStrangersTold) {
     event(msg::SEVERITY_WARNING, "intruder", "a second " + peer.service + " of run " + peer.run + "; this one goes on");
   }
 }
@@ -267,7 +267,7 @@ std::optional<std::chrono::nanoseconds> Service::pauseBefore(const dds::Guid& as
   const std::optional<std::int64_t> due_ns = pace_.admit(dds::prefixOf(asker), now_ns);
   if (due_ns) return std::chrono::nanoseconds(*due_ns - now_ns);
   if (!std::exchange(told_flood_, true)) {
-    const auto peer = participant_.peer(dds::prefixOf(asker));
+    const auto peer = participant_.member(dds::prefixOf(asker));
     event(msg::SEVERITY_WARNING, "flood",
           (peer ? peer->service : dds::toString(dds::prefixOf(asker))) +
               " asks more than 100 times a second: what would wait for more than 1 s is not answered");

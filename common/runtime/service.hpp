@@ -198,6 +198,7 @@ class Service {
   std::optional<std::uint64_t> end_step_;
   std::atomic<bool> ready_{false};
   std::atomic<bool> gave_way_{false};
+  std::size_t rivals_told_ = 0;
   bool is_closed_ = false;     // guarded by mutex_: no input is handled any more
   bool manifest_out_ = false;  // guarded by mutex_
   ExitCode exit_code_ = ExitCode::kOk;

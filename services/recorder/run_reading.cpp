@@ -17,11 +17,10 @@ bool isOfCell(const dds::DiscoveredWriter& writer, const std::string& partition)
                      [&](const std::string& theirs) { return fnmatch(theirs.c_str(), partition.c_str(), 0) == 0; });
 }
 
-/// @param told  how many writers have been told of; a flood of them must not flood the recording.
-bool isAdmitted(Service& service, const dds::DiscoveredWriter& writer, std::atomic<int>& told) {
-  constexpr int kMaxTold = 20;
+/// @param told  how many writers have been told of.
+bool isAdmitted(Service& service, const dds::DiscoveredWriter& writer, std::atomic<std::size_t>& told) {
   if (hasControlCharacters(writer.topic) || hasControlCharacters(writer.type)) {
-    if (told++ < kMaxTold) {
+    if (told++ < kMaxStrangersTold) {
       service.event(msg::SEVERITY_WARNING, "stranger",
                     "a writer of " + dds::toString(writer.guid) +
                         " is not recorded: control characters in the name of its topic or type");
@@ -61,7 +60,7 @@ ReadingRules rulesOfRun(Service& service) {
     rules.awaited.insert(name);
   }
   rules.is_wanted = [&service, partition = service.options().participant().partition,
-                     told = std::make_shared<std::atomic<int>>(0)](const dds::DiscoveredWriter& writer) {
+                     told = std::make_shared<std::atomic<std::size_t>>(0)](const dds::DiscoveredWriter& writer) {
     return isOfCell(writer, partition) && isAdmitted(service, writer, *told);
   };
   rules.filter_for = [&service](const std::string& topic) {
@@ -69,7 +68,9 @@ ReadingRules rulesOfRun(Service& service) {
     return facts == nullptr ? dds::WriterFilter{} : service.admission().filter(*facts);
   };
   rules.on_match = [&service] { service.matchesChanged(); };
-  rules.on_unreadable = [&service](const std::string& text) { service.event(msg::SEVERITY_ERROR, "record", text); };
+  rules.on_unreadable = [&service, told = std::size_t{0}](const std::string& text) mutable {
+    if (told++ < kMaxStrangersTold) service.event(msg::SEVERITY_ERROR, "record", text);
+  };
   return rules;
 }
 

@@ -239,7 +239,9 @@ std::string RecordingSession::objectionTo(const msg::RecordRequest& request) con
   if (path == path_) return path.string() + " is where the ring goes at the end of the run";
   Room there(config_);
   there.measure(path);
-  return roomObjection(config_, ring_->bytes(), there.freeBytes());
+  std::uint64_t declared_bytes = 0;
+  for (const auto& [key, stream] : streams_) declared_bytes += stream.declaredBytes();
+  return roomObjection(config_, ring_->bytes(), declared_bytes, there.freeBytes());
 }
 
 void RecordingSession::start(const std::string& path) {

@@ -44,8 +44,9 @@ StorageVerdict judgeStorage(const RecordingConfig& config, const Storage& storag
   return config.drops_oldest && storage.closed_parts > 0 ? StorageVerdict::kDropOldest : StorageVerdict::kStop;
 }
 
-std::string roomObjection(const RecordingConfig& config, std::uint64_t bytes, std::uint64_t free_bytes) {
-  const std::uint64_t needed = bytes + closingBytes(config, bytes);
+std::string roomObjection(const RecordingConfig& config, std::uint64_t bytes, std::uint64_t declared_bytes,
+                          std::uint64_t free_bytes) {
+  const std::uint64_t needed = bytes + closingBytes(config, bytes, declared_bytes);
   if (config.min_free_bytes == 0 || free_bytes >= config.min_free_bytes + needed) return "";
   return fmt::format(
       "up to {:.1f} MB would be written, and recording.min_free_MB, {:g}, has to be left: the disk has "

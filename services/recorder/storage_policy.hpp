@@ -24,12 +24,13 @@ enum class StorageVerdict { kGoOn, kDropOldest, kStop };
 
 /// What the part being written will grow by when it is ended now: its last chunk, the index, the certificate.
 [[nodiscard]] std::uint64_t closingBytes(const RecordingConfig& config, std::uint64_t part_bytes,
-                                         std::uint64_t declared_bytes = 0);
+                                         std::uint64_t declared_bytes);
 [[nodiscard]] StorageVerdict judgeStorage(const RecordingConfig& config, const Storage& storage);
 /// Whether less than is to be left would be left on the disk, were it ended now.
 [[nodiscard]] bool isDiskLow(const RecordingConfig& config, const Storage& storage);
 /// Why a file of so many bytes, before compression, is not to be written to a disk with so many left; empty when it is.
-[[nodiscard]] std::string roomObjection(const RecordingConfig& config, std::uint64_t bytes, std::uint64_t free_bytes);
+[[nodiscard]] std::string roomObjection(const RecordingConfig& config, std::uint64_t bytes,
+                                        std::uint64_t declared_bytes, std::uint64_t free_bytes);
 /// What the limits are called where they were set.
 struct LimitNames {
   const char* max = "recording.max_MB";

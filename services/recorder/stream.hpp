@@ -41,6 +41,13 @@ struct Stream {
   [[nodiscard]] const std::string& topic() const { return received->first.first; }
   [[nodiscard]] const dds::Guid& writer() const { return received->first.second; }
 
+  /// What its channel takes in a file, about. Types of others have no text; Baton's are as many as in any run.
+  [[nodiscard]] std::uint64_t declaredBytes() const {
+    constexpr std::uint64_t kLengths = 8, kRecord = 32;
+    std::uint64_t bytes = kRecord + topic().size();
+    for (const auto& [name, value] : metadata) bytes += kLengths + name.size() + value.size();
+    return bytes;
+  }
   /// A sample has been booked at this step of the run. Returns how many of its writer never came between the one before
   /// and this.
   std::uint64_t booked(std::uint64_t elapsed_steps) {

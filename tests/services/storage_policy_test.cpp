@@ -33,7 +33,7 @@ TEST(Budget, EndsTheRecordingSoEarlyThatTheFinishedFileFits) {
   EXPECT_EQ(judgeStorage(config, {.part_bytes = 9 * kMB, .free_bytes = kMB}), StorageVerdict::kGoOn);
   const std::uint64_t last = 9'700'000;
   EXPECT_EQ(judgeStorage(config, {.part_bytes = last, .free_bytes = kMB}), StorageVerdict::kStop);
-  EXPECT_GE(last + closingBytes(config, last), config.max_bytes);
+  EXPECT_GE(last + closingBytes(config, last, 0), config.max_bytes);
 }
 
 TEST(Budget, CountsAllParts) {
@@ -54,7 +54,7 @@ TEST(Budget, DropsTheOldestPartWhereThatIsWantedAndThereIsOne) {
 TEST(LowDisk, EndsTheRecordingOrDropsTheOldestSoEarlyThatSoMuchIsLeftBehindTheFinishedFile) {
   RecordingConfig config;
   config.min_free_bytes = 50 * kMB;
-  const std::uint64_t least = 50 * kMB + closingBytes(config, kMB);
+  const std::uint64_t least = 50 * kMB + closingBytes(config, kMB, 0);
   EXPECT_GT(least, 50 * kMB + config.chunk_bytes) << "the last chunk and the summary";
   EXPECT_EQ(judgeStorage(config, {.part_bytes = kMB, .free_bytes = least}), StorageVerdict::kGoOn);
   const Storage low{.part_bytes = kMB, .closed_parts = 1, .free_bytes = least - 1};
@@ -74,14 +74,16 @@ TEST(LowDisk, CountsWhatTheLastChunkAndTheSummaryRepeat) {
 }
 
 TEST(Snapshot, IsWrittenOnlyWhereSoMuchIsLeftBehindIt) {
+  constexpr std::uint64_t kDeclared = kMB;  // of a thousand writers: the last chunk and the summary repeat it
   RecordingConfig config;
   config.min_free_bytes = 50 * kMB;
-  const std::uint64_t least = 50 * kMB + 20 * kMB + closingBytes(config, 20 * kMB);
-  EXPECT_EQ(roomObjection(config, 20 * kMB, least), "");
-  const std::string objection = roomObjection(config, 20 * kMB, least - 1);
+  const std::uint64_t least = 50 * kMB + 20 * kMB + closingBytes(config, 20 * kMB, kDeclared);
+  EXPECT_GT(least, 50 * kMB + 20 * kMB + 2 * kDeclared);
+  EXPECT_EQ(roomObjection(config, 20 * kMB, kDeclared, least), "");
+  const std::string objection = roomObjection(config, 20 * kMB, kDeclared, least - 1);
   EXPECT_NE(objection.find("recording.min_free_MB, 50, has to be left"), std::string::npos) << objection;
   config.min_free_bytes = 0;
-  EXPECT_EQ(roomObjection(config, 20 * kMB, 0), "") << "nothing was asked for";
+  EXPECT_EQ(roomObjection(config, 20 * kMB, kDeclared, 0), "") << "nothing was asked for";
 }
 
 TEST(NoPolicy, NeverEndsARecording) {
