@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <climits>
 #include <cstdlib>
 #include <fstream>
 #include <random>
@@ -15,6 +16,9 @@
 
 namespace baton {
 namespace fs = std::filesystem;
+namespace {
+constexpr std::size_t kMaxShown = 200;  // characters of a path that is none
+}
 
 fs::path stateFolder() {
   const auto variable = [](const char* name) -> std::string {
@@ -70,27 +74,38 @@ fs::path dataFolder() {
                          ", found nothing: build or install Baton again, or give whole paths");
 }
 
-fs::path findScenario(const std::string& name) {
+namespace {
+/// @param kind  "scenario": what is meant, and with an s the folder of those that come with Baton.
+fs::path findNamed(const std::string& kind, const std::string& name) {
   std::error_code is_none;  // also a name that no file can have
   if (fs::is_regular_file(name, is_none)) return fs::absolute(name);
-  const fs::path folder = dataFolder() / "scenarios";
+  const fs::path folder = dataFolder() / (kind + "s");
   if (fs::path known = folder / (name + ".yaml"); fs::is_regular_file(known, is_none)) return known;
   if (fs::is_directory(name, is_none)) {
-    throw UsageError("scenario " + printable(name) + ": expected a file, found a folder");
+    throw UsageError(kind + " " + printable(name) + ": expected a file, found a folder");
   }
   std::string names;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".yaml") names += (names.empty() ? "" : ", ") + entry.path().stem().string();
   }
-  throw UsageError("scenario " + printable(name.substr(0, 200)) + ": expected a file or one of " + names +
+  throw UsageError(kind + " " + printable(name.substr(0, kMaxShown)) + ": expected a file or one of " + names +
                    ", found neither");
 }
+}  // namespace
+
+fs::path findScenario(const std::string& name) { return findNamed("scenario", name); }
+fs::path findRobot(const std::string& name) { return findNamed("robot", name); }
 
 std::filesystem::path outputPath(const std::string& out) {
   std::filesystem::path path = std::filesystem::absolute(out);
-  if (!std::filesystem::is_directory(path.parent_path())) {
-    throw UsageError("--out " + out + ": expected a file in an existing folder, and " + path.parent_path().string() +
-                     " is none");
+  std::error_code is_none;  // also a name that no folder can have
+  if (!fs::is_directory(path.parent_path(), is_none)) {
+    throw UsageError("--out " + printable(out.substr(0, kMaxShown)) + ": expected a file in an existing folder, and " +
+                     printable(path.parent_path().string().substr(0, kMaxShown)) + " is none");
+  }
+  if (path.filename().string().size() > NAME_MAX) {
+    throw UsageError("--out " + printable(out.substr(0, kMaxShown)) + ": expected a name of at most " +
+                     std::to_string(NAME_MAX) + " characters");
   }
   return path;
 }

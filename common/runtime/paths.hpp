@@ -29,6 +29,8 @@ namespace baton {
 /// A scenario as a person names it: a path, or the bare name of one in dataFolder()/scenarios. Throws UsageError
 /// listing what there is.
 [[nodiscard]] std::filesystem::path findScenario(const std::string& name);
+/// Likewise a robot, in dataFolder()/robots.
+[[nodiscard]] std::filesystem::path findRobot(const std::string& name);
 
 /// The absolute path of a file to be made, as a person names it with --out. Throws UsageError when its folder is not
 /// there.

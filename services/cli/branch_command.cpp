@@ -85,6 +85,7 @@ nlohmann::ordered_json runFrom(const CheckpointSet& set, const fs::path& folder,
   }
   RunSession session(request, true);
   exit_code = runToTheEnd(session);
+  if (session.wasInterrupted()) exit_code = ExitCode::kInterrupted;  // whatever had failed before
   return session.result();
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "control/parameters.hpp"
+#include "mcap/reader.hpp"
 #include "run_commands.hpp"
 #include "runtime/log.hpp"
 #include "runtime/paths.hpp"
@@ -73,7 +74,8 @@ ExitCode runProgram(const std::filesystem::path& program, std::vector<std::strin
     _exit(127);
   }
   int how = 0;
-  waitpid(pid, &how, 0);
+  while (waitpid(pid, &how, 0) < 0 && errno == EINTR) {  // by Ctrl-C, which ends the program too
+  }
   return WIFEXITED(how) ? static_cast<ExitCode>(WEXITSTATUS(how)) : ExitCode::kFailed;
 }
 
@@ -99,6 +101,7 @@ ExitCode demo(const RunRequest& request) {
   std::printf("\nreplaying the first 2 seconds of the recording, as its own writers on DDS\n");
   const ExitCode replay_code = runProgram(siblingProgram("baton-replayer"),
                                           {recording, "--to", "2", "--domain", std::to_string(request.domain)});
+  if (session.wasInterrupted()) return ExitCode::kInterrupted;
   const char* baton = isInstalled() ? "baton" : "deploy/baton";
   std::fputs(fmt::format("\nnext, try\n"
                          "  {0} bag info {1}\n"

@@ -40,17 +40,6 @@ struct ModelReport {
   JointVector tau_lagrange;
 };
 
-fs::path findRobot(const std::string& name) {
-  if (fs::is_regular_file(name)) return name;
-  const fs::path folder = dataFolder() / "robots";
-  if (fs::path known = folder / (name + ".yaml"); fs::is_regular_file(known)) return known;
-  std::string names;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".yaml") names += (names.empty() ? "" : ", ") + entry.path().stem().string();
-  }
-  throw UsageError("robot " + name + ": expected a file or one of " + names + ", found neither");
-}
-
 /// The numbers of an option, written as in the files: "pi/6" is one. All zero when the option was not given.
 Eigen::VectorXd parseNumbers(const std::string& option, const std::vector<std::string>& words, int size,
                              const std::string& each) {

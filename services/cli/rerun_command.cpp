@@ -40,6 +40,20 @@ nlohmann::ordered_json toJson(const Rerun& made, const std::string& recording) {
   return json;
 }
 
+/// What was made until something went wrong is there to look into, where it says; nothing leaves nothing.
+Rerun rerunIn(const fs::path& folder, const mcap::FileList& files, const RunRequest& run) {
+  try {
+    return rerun(files, folder, run, runToTheEnd);
+  } catch (const std::exception&) {
+    if (fs::exists(run.out)) {
+      std::fprintf(stderr, "baton: what was repeated is in %s\n", folder.c_str());
+    } else {
+      fs::remove_all(folder);
+    }
+    throw;
+  }
+}
+
 void tellRerun(const RerunRequest& request, ExitCode& exit_code) {
   ExitCode holes = ExitCode::kOk;
   const mcap::FileList files = findRecording(request.recording, holes);
@@ -48,7 +62,7 @@ void tellRerun(const RerunRequest& request, ExitCode& exit_code) {
   const bool is_kept = !request.run.out.empty();
   RunRequest run = request.run;
   if (!is_kept) run.out = (folder / "rerun.mcap").string();
-  const Rerun made = rerun(files, folder, run, runToTheEnd);
+  const Rerun made = rerunIn(folder, files, run);
   if (request.json) {
     std::puts(toText(toJson(made, files.string())).c_str());
   } else {

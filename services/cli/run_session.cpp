@@ -189,8 +189,8 @@ std::optional<ExitCode> RunSession::follow(const std::function<void(const RunPro
       kill(info_.supervisor_pid, SIGCONT);  // a stopped process would not receive it
     }
     progress(now);
-    if (now.sim && until(*now.sim)) return std::nullopt;
-    usleep(50'000);  // how often a person sees progress
+    if (passed_on == 0 && now.sim && until(*now.sim)) return std::nullopt;  // else it is about to end
+    usleep(50'000);                                                         // how often a person sees progress
   }
 }
 

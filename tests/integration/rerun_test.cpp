@@ -350,6 +350,7 @@ TEST(Rerun, RefusesWhatCannotBeRepeated) {
   const Finished refused = bench.baton({"rerun", file});
   EXPECT_EQ(refused.exit_code, 2) << refused.out;
   EXPECT_NE(refused.err.find("realtime"), std::string::npos) << refused.err;
+  EXPECT_TRUE(std::filesystem::is_empty(bench.folder() / "reruns")) << "nothing was made, and nothing is left";
   EXPECT_EQ(bench.baton({"rerun", (bench.folder() / "none.mcap").string()}).exit_code, 3);
 }
 
