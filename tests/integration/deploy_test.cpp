@@ -26,7 +26,9 @@ class Deploy : public ::testing::Test {
   [[nodiscard]] Finished baton(const std::string& arguments) const {
     const std::string folder = bench_.folder().string();
     return runProgram(
-        "/bin/sh", {"-c", "PATH='" + folder + "/tools':\"$PATH\" '" + folder + "/deploy/baton' " + arguments}, folder);
+        "/bin/sh",
+        {"-c", "unset BATON_PRESET; PATH='" + folder + "/tools':\"$PATH\" '" + folder + "/deploy/baton' " + arguments},
+        folder);
   }
 
   Bench bench_;

@@ -323,18 +323,8 @@ TEST(Rerun, WhosePlantDiesBeforeTheFirstStepDiffersAndTheRecordingIsNotBlamed) {
   const Bench bench;
   const std::string file = (bench.folder() / "run.mcap").string();
   ASSERT_EQ(bench.baton({"run", bench.write("short.yaml", shortContact()), "--out", file}).exit_code, 0);
-  // The same programs, but for the plant.
-  const std::filesystem::path programs = bench.folder() / "programs";
-  std::filesystem::create_directory(programs);
-  for (const auto& entry : std::filesystem::directory_iterator(programFolder())) {
-    const std::string name = entry.path().filename();
-    const bool is_wanted = name.starts_with("baton") && !name.starts_with("baton-bench") && name != "baton-plant";
-    if (is_wanted) std::filesystem::copy_file(entry.path(), programs / name);
-  }
-  std::filesystem::permissions(bench.write("programs/baton-plant", "#!/bin/sh\nkill -KILL $$\n"),
-                               std::filesystem::perms::owner_all);
-  const Finished again =
-      runProgram(programs / "baton", {"rerun", file, "--domain", std::to_string(bench.domain())}, bench.folder());
+  const Finished again = runProgram(programsBut(bench, "baton-plant", "kill -KILL $$") / "baton",
+                                    {"rerun", file, "--domain", std::to_string(bench.domain())}, bench.folder());
   EXPECT_EQ(again.exit_code, 1) << again.out << again.err;
   const std::string said = again.out + again.err;
   EXPECT_NE(said.find("plant could not start"), std::string::npos) << said;

@@ -3,13 +3,16 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
 #include <set>
 
 #include "dds/typed.hpp"
 #include "runtime/cell.hpp"
+#include "runtime/paths.hpp"
 #include "runtime/service_options.hpp"
 #include "support/live_run.hpp"
 #include "support/short_contact.hpp"
+#include "support/stranger.hpp"
 
 namespace baton::test {
 namespace {
@@ -66,46 +69,92 @@ TEST(RunFolder, ARecordingGoesWhereTheOperatorSays) {
   EXPECT_EQ(bench.baton({"bag", "info", (elsewhere / "a.mcap").string()}).exit_code, 0);
 }
 
+/// Sends requests for a recording as the command line does, but with whatever is in them.
+class Asker {
+ public:
+  Asker(const LiveRun& run, const std::optional<dds::RunKey>& key)
+      : participant_({.domain = run.bench.domain(),
+                      .partition = "lab/" + run.status.at("run").get<std::string>(),
+                      .cell = "lab",
+                      .run = run.status.at("run"),
+                      .service = std::string(kOperatorPrefix) + "test",
+                      .key = key}),
+        reader_(participant_, dds::topics::kRecordReply,
+                [this](const msg::RecordReply& reply, const dds::RawSample&) {
+                  const std::lock_guard lock(mutex_);
+                  replies_[reply.request_id()] = reply;
+                }),
+        writer_(participant_, dds::topics::kRecordRequest) {
+    EXPECT_TRUE(eventually([&] { return !writer_.raw().matched().empty() && !reader_.raw().matched().empty(); }));
+  }
+  [[nodiscard]] msg::RecordReply ask(msg::RecordAction action, const std::string& path) {
+    msg::RecordRequest request;
+    request.request_id(++asked_);
+    request.action(action);
+    request.path(path);
+    writer_.write(request);
+    EXPECT_TRUE(eventually([&] {
+      const std::lock_guard lock(mutex_);
+      return replies_.contains(asked_);
+    })) << path;
+    const std::lock_guard lock(mutex_);
+    return replies_[asked_];
+  }
+
+ private:
+  dds::Participant participant_;
+  std::mutex mutex_;
+  std::map<std::uint64_t, msg::RecordReply> replies_;
+  dds::Reader<msg::RecordReply> reader_;
+  dds::Writer<msg::RecordRequest> writer_;
+  std::uint64_t asked_ = 0;
+};
+
+void expectPathsAreRefused(const Bench& bench, Asker& asker, msg::RecordAction action) {
+  for (const char* name : {"/tmp/authorized_keys", "/tmp/a.mcap", "../a.mcap", "a\n.mcap", ".mcap", "a.txt"}) {
+    const msg::RecordReply reply = asker.ask(action, name);
+    EXPECT_FALSE(reply.accepted()) << name;
+    EXPECT_NE(std::string(reply.text().c_str()).find("expected the name of a file"), std::string::npos)
+        << name << ": " << reply.text().c_str();
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(bench.folder())) {
+    EXPECT_NE(entry.path().filename(), "a.mcap");
+    EXPECT_NE(entry.path().extension(), ".txt") << entry.path();
+  }
+}
+
 /// The command line sends names that are in order. The recorder does not rely on that.
 TEST(RunFolder, TheRecorderTakesNamesOnlyAlsoFromWhoHasTheKey) {
   const Bench bench;
-  const LiveRun run(bench, endlessContact(), {"--record-later"});
-  const std::string id = run.status.at("run");
-  dds::Participant participant({.domain = bench.domain(),
-                                .partition = "lab/" + id,
-                                .cell = "lab",
-                                .run = id,
-                                .service = std::string(kOperatorPrefix) + "test",
-                                .key = readKey((run.folder() / "key").string())});
-  std::mutex mutex;
-  std::map<std::uint64_t, msg::RecordReply> replies;
-  const dds::Reader<msg::RecordReply> reader(participant, dds::topics::kRecordReply,
-                                             [&](const msg::RecordReply& reply, const dds::RawSample&) {
-                                               const std::lock_guard lock(mutex);
-                                               replies[reply.request_id()] = reply;
-                                             });
-  dds::Writer<msg::RecordRequest> writer(participant, dds::topics::kRecordRequest);
-  ASSERT_TRUE(eventually([&] { return !writer.raw().matched().empty() && !reader.raw().matched().empty(); }));
-  std::uint64_t asked = 0;
-  for (const auto action : {msg::RECORD_START, msg::RECORD_SNAPSHOT}) {
-    for (const char* name : {"/tmp/authorized_keys", "/tmp/a.mcap", "../a.mcap", "a\n.mcap", ".mcap", "a.txt"}) {
-      msg::RecordRequest request;
-      request.request_id(++asked);
-      request.action(action);
-      request.path(name);
-      writer.write(request);
-      ASSERT_TRUE(eventually([&] {
-        const std::lock_guard lock(mutex);
-        return replies.contains(asked);
-      })) << name;
-      EXPECT_FALSE(replies.at(asked).accepted()) << name;
-    }
+  {
+    const LiveRun run(bench, endlessContact(), {"--record-later"});
+    Asker asker(run, readKey((run.folder() / "key").string()));
+    expectPathsAreRefused(bench, asker, msg::RECORD_START);
+    EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
   }
-  EXPECT_NE(std::string(replies.at(1).text().c_str()).find("expected the name of a file"), std::string::npos)
-      << replies.at(1).text().c_str();
+  const LiveRun run(bench, endlessContact("recording: {ring_s: 0.1}\n"), {"--overwrite"});
+  Asker asker(run, readKey((run.folder() / "key").string()));
+  expectPathsAreRefused(bench, asker, msg::RECORD_SNAPSHOT);
+  EXPECT_TRUE(asker.ask(msg::RECORD_SNAPSHOT, "snapshot.mcap").accepted());
   EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
-  for (const auto& entry : fs::recursive_directory_iterator(bench.folder()))
-    EXPECT_NE(entry.path().extension(), ".mcap") << entry.path();
+  EXPECT_TRUE(fs::exists(bench.folder() / "snapshot.mcap"));
+}
+
+TEST(RunFolder, AnOpenRunTakesRequestsFromAnybodyAndNothingElse) {
+  const Bench bench;
+  const LiveRun run(bench, endlessContact(), {"--open", "--record-later"});
+  Asker anybody(run, std::nullopt);
+  expectPathsAreRefused(bench, anybody, msg::RECORD_START);
+  EXPECT_TRUE(anybody.ask(msg::RECORD_START, "anybodys.mcap").accepted());
+  Stranger stranger(bench.domain(), run.status.at("run"), kEnvironmentName);
+  ASSERT_TRUE(eventually([&] {
+    stranger.say(dds::topics::kContact, msg::Contact{});
+    return stranger.isHeard();
+  }));
+  EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
+  const std::string log = readFile(run.folder() / "plant.log");
+  EXPECT_NE(log.find("contact: "), std::string::npos) << log;
+  EXPECT_NE(log.find(" of strangers, not heard"), std::string::npos) << log;
 }
 
 }  // namespace

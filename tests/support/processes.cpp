@@ -67,6 +67,18 @@ int waitFor(pid_t pid, const std::vector<fs::path>& outputs) {
 
 fs::path programFolder() { return BATON_TEST_PROGRAMS; }
 
+fs::path programsBut(const Bench& bench, const std::string& program, const std::string& script) {
+  fs::path folder = bench.folder() / "programs";
+  fs::create_directory(folder);
+  for (const auto& entry : fs::directory_iterator(programFolder())) {
+    const std::string name = entry.path().filename();
+    const bool is_wanted = name.starts_with("baton") && !name.starts_with("baton-bench") && name != program;
+    if (is_wanted) fs::copy_file(entry.path(), folder / name);
+  }
+  fs::permissions(bench.write("programs/" + program, "#!/bin/sh\n" + script + "\n"), fs::perms::owner_all);
+  return folder;
+}
+
 Finished runProgram(const fs::path& program, const std::vector<std::string>& arguments, const fs::path& home) {
   static std::atomic<int> count{0};  // tests call this from several threads
   const std::string stem = "call" + std::to_string(++count);

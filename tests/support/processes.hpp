@@ -50,6 +50,10 @@ class Bench {
 /// Where the programs are.
 [[nodiscard]] std::filesystem::path programFolder();
 
+/// A copy of all programs of a run, but that one of them is this script. Returns its folder, which lies in the bench's.
+[[nodiscard]] std::filesystem::path programsBut(const Bench& bench, const std::string& program,
+                                                const std::string& script);
+
 /// Runs a program to its end.
 [[nodiscard]] Finished runProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                                   const std::filesystem::path& home);

@@ -34,4 +34,5 @@ expectBreach common/environment/x.cpp 'double y = std::pow(x, 3) + elementary::s
 expectBreach common/robot/x.cpp 'Matrix3 R = Eigen::AngleAxisd(1.0, axis).toRotationMatrix();'
 expectBreach common/control/x.cpp 'double y = x.array().exp().sum();'
 expectBreach services/plant/x.cpp 'double y = std::hypot(a, b);'
+expectBreach services/recorder/x.cpp 'const auto now = std::chrono::system_clock::now();'
 echo "every breach is found"
