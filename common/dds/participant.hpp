@@ -77,9 +77,9 @@ class Participant {
 
   /// The Baton process that has this GUID prefix, if discovery has told. Strangers are none.
   [[nodiscard]] std::optional<Peer> peer(const GuidPrefix& prefix) const;
-  [[nodiscard]] std::vector<Peer> peers() const;
   /// The same, when it has our run's key: who claims another run is no stranger and may still be in our partition.
   [[nodiscard]] std::optional<Peer> member(const GuidPrefix& prefix) const;
+  [[nodiscard]] std::vector<Peer> peers() const;
   /// What a stranger calls itself, if discovery has told.
   [[nodiscard]] std::optional<Peer> stranger(const GuidPrefix& prefix) const;
   [[nodiscard]] bool hasKey() const;

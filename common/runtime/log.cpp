@@ -5,6 +5,7 @@
 
 #include <deque>
 #include <fstream>
+#include <utility>
 
 #include "base/text.hpp"
 #include "dds/participant.hpp"
@@ -24,11 +25,12 @@ std::string lastLines(const std::filesystem::path& log, std::size_t count) {
   std::ifstream stream(log);
   std::deque<std::string> lines;
   for (std::string line; std::getline(stream, line);) {
-    lines.push_back("  " + escaped(line) + "\n");  // the DDS library writes names of others as they are
+    lines.push_back(std::move(line));
     if (lines.size() > count) lines.pop_front();
   }
   std::string text;
-  for (const std::string& line : lines) text += line;
+  // The DDS library writes names of others as they are.
+  for (const std::string& line : lines) text += "  " + escaped(line) + "\n";
   return text;
 }
 

@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -17,7 +16,6 @@
 #include "runtime/yaml.hpp"
 
 namespace baton {
-namespace fs = std::filesystem;
 namespace {
 
 struct ModelRequest {

@@ -33,17 +33,6 @@ struct PlayerArguments {
 
 double inSeconds(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-9; }
 
-/// Whether it is a replay of this user's.
-bool hasKey(const RunInfo& place) {
-  std::error_code is_hidden;
-  return std::filesystem::exists(keyFile(place), is_hidden);
-}
-
-struct Replay {
-  RunInfo place;
-  msg::ReplayStatus status;
-};
-
 bool isGoingOn(const msg::ReplayStatus& status) { return status.state() != msg::REPLAY_FINISHED; }
 
 /// By what discovery tells. Any process can say that it is a replay, so only where there is none of this user's.
@@ -62,8 +51,15 @@ std::set<std::string> replaysOfOthers(const RunInfo& place) {
   return runs;
 }
 
+UnavailableError nothingIsReplayed(const PlayerArguments& arguments) {
+  return UnavailableError(fmt::format(
+      "nothing is replayed in cell {} of domain {}{}: start it with `baton replay FILE`, or say --cell, --domain and "
+      "--run of the one that is meant",
+      arguments.target.cell, arguments.target.domain, arguments.run.empty() ? "" : " as run " + arguments.run));
+}
+
 /// The replay that is meant. Throws UnavailableError when there is none, UsageError when there are several.
-Replay findReplay(const PlayerArguments& arguments) {
+RunInfo findReplay(const PlayerArguments& arguments) {
   RunInfo place;
   place.cell = arguments.target.cell;
   place.run = arguments.run.empty() ? "*" : arguments.run;
@@ -71,27 +67,27 @@ Replay findReplay(const PlayerArguments& arguments) {
   std::set<std::string> runs = replaysOfThisUser(place.domain, place.cell);
   if (place.run != "*") std::erase_if(runs, [&](const std::string& run) { return run != place.run; });
   if (runs.empty()) runs = replaysOfOthers(place);
+  if (runs.empty()) throw nothingIsReplayed(arguments);
   if (runs.size() > 1) {
     throw UsageError(fmt::format("expected to be told which replay of cell {} is meant: --run {}", place.cell,
                                  fmt::join(runs, ", --run ")));
   }
-  std::optional<msg::ReplayStatus> status;
-  if (!runs.empty()) {
-    place.run = *runs.begin();
-    place.folder = replayFolder(place.domain, place.cell, place.run).string();
-    status = CellClient(place).latest(dds::topics::kReplayStatus, CellClient::kStatusPatience);
-  }
-  if (!status || !isGoingOn(*status)) {
-    throw UnavailableError(fmt::format(
-        "nothing is replayed in cell {} of domain {}{}: start it with `baton replay FILE`, or say --cell, --domain and "
-        "--run of the one that is meant",
-        place.cell, place.domain, arguments.run.empty() ? "" : " as run " + arguments.run));
-  }
-  return {.place = place, .status = *status};
+  place.run = *runs.begin();
+  place.folder = replayFolder(place.domain, place.cell, place.run).string();
+  return place;
+}
+
+/// Throws UnavailableError when it says nothing, or has finished.
+msg::ReplayStatus statusOf(CellClient& client, const PlayerArguments& arguments) {
+  const auto status = client.latest(dds::topics::kReplayStatus, CellClient::kStatusPatience);
+  if (!status || !isGoingOn(*status)) throw nothingIsReplayed(arguments);
+  return *status;
 }
 
 void tell(const PlayerArguments& arguments) {
-  const auto [place, status] = findReplay(arguments);
+  const RunInfo place = findReplay(arguments);
+  CellClient client(place);
+  const msg::ReplayStatus status = statusOf(client, arguments);
   const double position_s = inSeconds(status.position_ns());
   const double duration_s = inSeconds(status.duration_ns());
   if (arguments.target.json) {
@@ -131,12 +127,14 @@ void tell(const PlayerArguments& arguments) {
 }
 
 void ask(const PlayerArguments& arguments, ExitCode& exit_code) {
-  const auto [place, status] = findReplay(arguments);
-  if (!hasKey(place)) {
+  const RunInfo place = findReplay(arguments);
+  CellClient client(place);
+  const msg::ReplayStatus status = statusOf(client, arguments);
+  std::error_code is_hidden;
+  if (!std::filesystem::exists(keyFile(place), is_hidden)) {
     throw UnavailableError("run " + place.run + " of cell " + place.cell +
                            " takes requests from the user who started it, with the same BATON_HOME");
   }
-  CellClient client(place);
   msg::ReplayRequest request = arguments.request;
   request.request_id(CellClient::newRequestId());
   // A step is answered when it is done; replays manage ten messages in a millisecond. One message of a rare topic may

@@ -189,8 +189,9 @@ std::optional<ExitCode> RunSession::follow(const std::function<void(const RunPro
       kill(info_.supervisor_pid, SIGCONT);  // a stopped process would not receive it
     }
     progress(now);
-    if (passed_on == 0 && now.sim && until(*now.sim)) return std::nullopt;  // else it is about to end
-    usleep(50'000);                                                         // how often a person sees progress
+    const bool is_to_end = passed_on > 0;
+    if (!is_to_end && now.sim && until(*now.sim)) return std::nullopt;
+    usleep(50'000);  // how often a person sees progress
   }
 }
 

@@ -22,7 +22,7 @@ dds::RunKey made(const std::filesystem::path& folder) {
 
 bool isIn(const std::filesystem::path& folder, const dds::RunKey& key) {
   const std::string file = keyFile(placeIn(folder));
-  return std::filesystem::exists(file) && readKey(file).text() == key.text();
+  return std::filesystem::exists(file) && readKey(file) == key;
 }
 
 }  // namespace
