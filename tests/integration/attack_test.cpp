@@ -212,10 +212,8 @@ TEST(Attack, ATopicOfAStrangersOwnMayCostTheVerdictAndIsNamed) {
   const std::string id = run.status.at("run");
   Stranger one(bench.domain(), id, "one"), other(bench.domain(), id, "other");
   const std::vector<std::byte> payload(8, std::byte{1});
-  for (Stranger* stranger : {&one, &other}) {
-    const std::string type = stranger == &one ? "test::One" : "test::Other";
-    stranger->sayRaw("theirs", type, payload);
-  }
+  one.sayRaw("theirs", "test::One", payload);
+  other.sayRaw("theirs", "test::Other", payload);
   ASSERT_TRUE(eventually([&] { return readFile(run.folder() / "recorder.log").find("theirs") != std::string::npos; }));
   ASSERT_EQ(bench.baton({"sim", "resume"}).exit_code, 0);
   const nlohmann::json result = run.result();
@@ -266,8 +264,8 @@ TEST(Attack, TheCommandLineTakesNoAnswerFromAStranger) {
     return record.sent() > 0;
   }));
   EXPECT_TRUE(eventually([&] {
-    const Finished refused = bench.baton({"controller", "stop", "nobody"});
-    EXPECT_NE((refused.out + refused.err).find("no controller called nobody runs"), std::string::npos) << refused.out;
+    const Finished refused = bench.baton({"controller", "stop", "absent"});
+    EXPECT_NE((refused.out + refused.err).find("no controller called absent runs"), std::string::npos) << refused.out;
     return launch.sent() > 0;
   }));
   EXPECT_EQ(bench.baton({"down"}).exit_code, 0);

@@ -209,7 +209,6 @@ TEST_F(ReplayControl, WhoOnlyClaimsToBeAReplayIsNone) {
   EXPECT_EQ(told.at("run"), "test") << told;
   EXPECT_EQ(told.at("state"), "paused") << told;
   EXPECT_EQ(player({"step", "3"}).at("messages"), 3);
-
   const Finished theirs = bench_.baton({"player", "status", "--run", "another"});
   EXPECT_EQ(theirs.exit_code, 0) << "a replay without a key can be looked at: " << theirs.err;
   EXPECT_EQ(theirs.out.find('\x1b'), std::string::npos) << theirs.out;

@@ -32,10 +32,7 @@ TEST(StandIn, OfARunThatFinishedAndThenWasAbortedTheLastWordCounts) {
   StandIn run("baton-plant", "exec sleep 1000");
   Bench& bench = run.bench;
   const std::string may_end = (bench.folder() / "may_end").string();
-  fs::remove(run.programs / "baton-environment");
-  fs::permissions(bench.write("programs/baton-environment",
-                              "#!/bin/sh\ntrap '' TERM\nwhile [ ! -e " + may_end + " ]; do sleep 0.1; done\n"),
-                  fs::perms::owner_all);
+  standIn(bench, "baton-environment", "trap '' TERM\nwhile [ ! -e " + may_end + " ]; do sleep 0.1; done");
   const int command = bench.start((run.programs / "baton").string(), run.arguments, "run.log");
   fs::path folder;  // the run's
   ASSERT_TRUE(eventually([&] {

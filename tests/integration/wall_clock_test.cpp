@@ -10,15 +10,13 @@ namespace {
 TEST(WallClock, OfARunMayBeSetWithoutATraceInItsRecording) {
   const Bench bench;
   const std::string file = (bench.folder() / "set.mcap").string();
-  const auto withJumps = [&](const std::string& arguments) {
-    const std::string program = (programFolder() / "baton").string();
-    return runProgram("/bin/sh",
-                      {"-c", "LD_PRELOAD=" BATON_TEST_JUMPING_CLOCK " exec " + program + " " + arguments +
-                                 " --domain " + std::to_string(bench.domain())},
-                      bench.folder());
-  };
   // In the pace of the simulation, so that it lasts longer than from one time of setting to the next.
-  const Finished run = withJumps("run " + bench.write("run.yaml", shortContact("rate: 1\n")) + " --out " + file);
+  const std::string scenario = bench.write("run.yaml", shortContact("rate: 1\n"));
+  const Finished run =
+      runProgram("/bin/sh",
+                 {"-c", "LD_PRELOAD=" BATON_TEST_JUMPING_CLOCK " exec " + (programFolder() / "baton").string() +
+                            " run " + scenario + " --out " + file + " --domain " + std::to_string(bench.domain())},
+                 bench.folder());
   EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
   const Finished verified = bench.baton({"bag", "verify", file, "--json"});
   EXPECT_EQ(verified.exit_code, 0) << verified.out;

@@ -19,7 +19,7 @@ TEST(EndVerdict, WhateverElseEndsItIsADeath) {
     EXPECT_EQ(endVerdict(signalled(number), false, true, true), EndVerdict::kDied) << number;
   }
   EXPECT_EQ(endVerdict(exited(1), false, true, false), EndVerdict::kDied);
-  EXPECT_EQ(endVerdict(signalled(SIGKILL), false, true, false), EndVerdict::kDied);   // somebody else's
+  EXPECT_EQ(endVerdict(signalled(SIGKILL), false, true, false), EndVerdict::kDied);   // not by us
   EXPECT_EQ(endVerdict(signalled(SIGTERM), false, false, false), EndVerdict::kDied);  // likewise
 }
 

@@ -67,6 +67,10 @@ int waitFor(pid_t pid, const std::vector<fs::path>& outputs) {
 
 fs::path programFolder() { return BATON_TEST_PROGRAMS; }
 
+void standIn(const Bench& bench, const std::string& program, const std::string& script) {
+  fs::permissions(bench.write("programs/" + program, "#!/bin/sh\n" + script + "\n"), fs::perms::owner_all);
+}
+
 fs::path programsBut(const Bench& bench, const std::string& program, const std::string& script) {
   fs::path folder = bench.folder() / "programs";
   fs::create_directory(folder);
@@ -75,7 +79,7 @@ fs::path programsBut(const Bench& bench, const std::string& program, const std::
     const bool is_wanted = name.starts_with("baton") && !name.starts_with("baton-bench") && name != program;
     if (is_wanted) fs::copy_file(entry.path(), folder / name);
   }
-  fs::permissions(bench.write("programs/" + program, "#!/bin/sh\n" + script + "\n"), fs::perms::owner_all);
+  standIn(bench, program, script);
   return folder;
 }
 

@@ -50,6 +50,8 @@ class Bench {
 /// Where the programs are.
 [[nodiscard]] std::filesystem::path programFolder();
 
+/// A script takes the place of a program in the folder "programs" of the bench.
+void standIn(const Bench& bench, const std::string& program, const std::string& script);
 /// A copy of all programs of a run, but that one of them is this script. Returns its folder, which lies in the bench's.
 [[nodiscard]] std::filesystem::path programsBut(const Bench& bench, const std::string& program,
                                                 const std::string& script);
