@@ -287,7 +287,7 @@ TEST(Attack, NoMoreThanTwentyAreToldOf) {
   // They are met in this order.
   EXPECT_TRUE(eventually([&] {
     stranger.sayRaw("last", "test::Number", std::vector<std::byte>(8));
-    return stranger.isHeard();
+    return stranger.readersOf("last").contains(kRecorderName);
   }));
   EXPECT_EQ(told(), kMaxStrangersTold);
   EXPECT_EQ(bench.baton({"down"}).exit_code, 0);

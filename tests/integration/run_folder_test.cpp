@@ -149,8 +149,9 @@ TEST(RunFolder, AnOpenRunTakesRequestsFromAnybodyAndNothingElse) {
   Stranger stranger(bench.domain(), run.status.at("run"), kEnvironmentName);
   ASSERT_TRUE(eventually([&] {
     stranger.say(dds::topics::kContact, msg::Contact{});
-    return stranger.isHeard();
+    return stranger.readersOf("contact").contains(kPlantName);
   }));
+  ASSERT_TRUE(stranger.hasArrived("contact"));
   EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
   const std::string log = readFile(run.folder() / "plant.log");
   EXPECT_NE(log.find("contact: "), std::string::npos) << log;
