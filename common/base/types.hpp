@@ -11,6 +11,10 @@
 
 #include <Eigen/Core>
 
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || __FINITE_MATH_ONLY__
+#error "Expected no fast-math: a run has the same bytes everywhere. Compile this file without -ffast-math and -Ofast."
+#endif
+
 namespace baton {
 
 inline constexpr int kMaxJoints = 8;

@@ -6,6 +6,7 @@
 #include <complex>
 #include <limits>
 
+#include "base/elementary.hpp"
 #include "robot/dynamics.hpp"
 #include "robot/kinematics.hpp"
 
@@ -19,7 +20,7 @@ double stableDistance(const std::complex<double>& direction) {
   for (; distance > kNearest; distance -= kStep) {
     const std::complex<double> z = distance * direction;
     const std::complex<double> growth = 1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)));
-    if (std::abs(growth) <= 1.0 + kRounding) break;
+    if (elementary::hypot(growth.real(), growth.imag()) <= 1.0 + kRounding) break;
   }
   return distance;
 }
@@ -65,7 +66,7 @@ SubstepNeed substepNeed(const RobotModel& model, const JointVector& q, const Sti
   if (!system.allFinite()) return need;
   const Eigen::VectorXcd poles = Eigen::EigenSolver<Eigen::MatrixXd>(system, false).eigenvalues();
   for (const std::complex<double>& pole : poles) {
-    const double magnitude = std::abs(pole);
+    const double magnitude = elementary::hypot(pole.real(), pole.imag());
     if (!(magnitude > 0.0)) continue;
     const double longest_s = stableDistance(pole / magnitude) / magnitude;
     if (longest_s < need.longest_s) need = {magnitude, longest_s};
