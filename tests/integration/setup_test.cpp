@@ -1,10 +1,13 @@
 // deploy/setup, with an apt of this test's own: nothing is installed and nothing removed.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <tuple>
 
+#include "runtime/paths.hpp"
 #include "support/processes.hpp"
 
 namespace baton::test {
@@ -40,10 +43,10 @@ class Setup : public ::testing::Test {
     tool("apt-cache", "printf '%s\\n' anything");
   }
 
-  [[nodiscard]] Finished setup(const std::string& arguments) const {
+  [[nodiscard]] Finished setup(const std::string& arguments, const fs::path& deploy = deployFolder()) const {
     return runProgram(
         "/bin/sh",
-        {"-c", "PATH='" + tools_.string() + "':\"$PATH\" '" + (deployFolder() / "setup").string() + "' " + arguments},
+        {"-c", "PATH='" + tools_.string() + "':\"$PATH\" '" + (deploy / "setup").string() + "' " + arguments},
         bench_.folder());
   }
 
@@ -61,8 +64,9 @@ class Setup : public ::testing::Test {
     return changing;
   }
 
- private:
   const Bench bench_;
+
+ private:
   const fs::path tools_ = bench_.folder() / "tools";
   const fs::path calls_ = bench_.folder() / "calls";
 };
@@ -101,6 +105,43 @@ TEST_F(Setup, TellsItsPlanThenInstallsAndForbidsToRemove) {
   EXPECT_NE(done.err.find("It takes 3 packages"), std::string::npos) << done.err;
   ASSERT_EQ(changingCalls().size(), 1U);
   EXPECT_NE(changingCalls().front().find("--no-remove"), std::string::npos) << changingCalls().front();
+}
+
+/// apt-get update has the exit code 0 then.
+TEST_F(Setup, SaysThatThePackageListsCouldNotBeRead) {
+  aptThat(R"(case " $* " in
+             *" update "*) echo 'W: Failed to fetch http://x/InRelease  Temporary failure resolving x' ;;
+             *) echo 'E: Unable to locate package ninja-build'; exit 100 ;;
+             esac)");
+  for (const char* arguments : {"run", "--dry-run run"}) {
+    const Finished finished = setup(arguments);
+    EXPECT_EQ(finished.exit_code, 3) << finished.err;
+    EXPECT_NE(finished.err.find("Temporary failure resolving x"), std::string::npos) << finished.err;
+    EXPECT_NE(finished.err.find("lists could not be read"), std::string::npos) << finished.err;
+  }
+}
+
+TEST_F(Setup, WhatRootInstallsInACheckoutBelongsToItsOwner) {
+  fs::create_directory(bench_.folder() / "deploy");
+  fs::copy_file(deployFolder() / "setup", bench_.folder() / "deploy/setup");
+  fs::create_directories(bench_.folder() / "tests/interop");
+  for (const char* name : {"package.json", "package-lock.json"}) {
+    std::ignore = bench_.write(std::string("tests/interop/") + name, "{}");
+  }
+  tool("dpkg-query", R"(shift 2; for name; do echo "$name installed"; done)");
+  tool("stat", "echo ann");
+  tool("chown", "");
+  tool("getent", "echo ann:x:1000:1000::/home/ann:/bin/sh");
+  const std::string calls = (bench_.folder() / "as_ann").string();
+  tool("runuser", "echo \"$@\" >>'" + calls + "'; shift 3; exec \"$@\"");
+  tool("npm", "mkdir node_modules; touch node_modules/.package-lock.json; echo home $HOME >>'" + calls + "'");
+  const Finished finished = setup("test", bench_.folder() / "deploy");
+  EXPECT_EQ(finished.exit_code, 0) << finished.err;
+  EXPECT_TRUE(fs::exists(bench_.folder() / ".build/interop/node_modules"));
+  const std::string as_owner = readFile(calls);
+  for (const char* part : {"-u ann -- env HOME=/home/ann cp ", " npm ci ", "home /home/ann\n"}) {
+    EXPECT_EQ(as_owner.find(part) != std::string::npos, geteuid() == 0) << part << ": " << as_owner;
+  }
 }
 
 TEST_F(Setup, RefusesWordsThatItDoesNotKnow) {
