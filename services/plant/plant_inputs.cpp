@@ -120,7 +120,8 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
     startWhenAllAreReady();
     if (member == kBrake) askAgain();  // a part that was started again has not seen the open step
   } else if (status.state() == msg::SERVICE_FAILED && !master_.isOver()) {
-    if (newcomers_.erase(name) > 0) return;
+    newcomers_.erase(name);
+    if (member == kBrake && status.role() == "controller") return;  // one that never stood by
     if (member == kBrake || master_.phase() == SimPhase::kStarting)
       return abort(name + " failed: " + status.text().c_str());
     Member& one = members_[static_cast<std::size_t>(member)];
@@ -234,6 +235,7 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
     }
   }
   reply.step(step);
+  publish(status());  // before the reply: whoever has that and looks sees what it did
   reply_out_.write(reply);
   if (request.action() == msg::SIM_STOP && reply.accepted() && request.at_step() == 0) {
     end_reason_ = "stopped by request";

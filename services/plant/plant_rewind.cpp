@@ -88,15 +88,15 @@ void Plant::finishReset() {
   pacer_.anchor(master_.step(), started_ns_);
   arbiter_.open(master_.step());
   service_.event(msg::SEVERITY_INFO, "reset", "from step " + std::to_string(from_step));
+  publishSwapActions();
+  openStep();
+  publish(status());
+  publishBaton();
   msg::SimReply reply;
   reply.request_id(request_id);
   reply.accepted(true);
   reply.step(master_.step());
   reply_out_.write(reply);
-  publishSwapActions();
-  openStep();
-  publish(status());
-  publishBaton();
   armTimer();
   if (!isRealtime()) proceed();
 }

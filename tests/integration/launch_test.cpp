@@ -116,5 +116,21 @@ TEST(Launch, ANewcomerThatDiesHarmsNobody) {
   EXPECT_EQ(bench.batonJson({"status", "--json"}).at("holder"), "tracking");
 }
 
+TEST(Launch, ANewcomerThatNeverSpeaksHarmsNobody) {
+  const Bench bench;
+  const std::filesystem::path programs = programsBut(bench, "baton-controller",
+                                                     "case \" $* \" in *\" fresh \"*) exit 1 ;; esac; exec '" +
+                                                         (programFolder() / "baton-controller").string() + "' \"$@\"");
+  const auto baton = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), {"--domain", std::to_string(bench.domain())});
+    return runProgram(programs / "baton", arguments, bench.folder());
+  };
+  const Finished up = baton({"up", bench.write("run.yaml", endlessContact("rate: 1\n")), "--no-recording"});
+  ASSERT_EQ(up.exit_code, 0) << up.out << up.err;
+  EXPECT_EQ(baton({"controller", "start", "fresh", "--law", "joint_pd"}).exit_code, 1);
+  EXPECT_EQ(bench.batonJson({"status", "--json"}).at("state"), "running");
+  EXPECT_EQ(baton({"down"}).exit_code, 0);
+}
+
 }  // namespace
 }  // namespace baton::test
