@@ -1,6 +1,7 @@
 #include "runtime/service.hpp"
 
 #include <spdlog/spdlog.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,18 +20,29 @@ namespace baton {
 namespace asio = boost::asio;
 namespace {
 
-/// Somebody else has to: who is stopped does nothing.
-void wakeUpAfter(double seconds) {
+/// Another process has to wake this one: who is stopped does nothing. It goes on calling, since on a busy machine the
+/// first call may come before this one stands.
+void standStillFor(double seconds) {
   const pid_t sleeper = getpid();
   const timespec pause{static_cast<time_t>(seconds), static_cast<long>(std::fmod(seconds, 1.0) * 1e9)};
   // The child may do no more than what is safe in a signal handler: the parent has other threads.
-  if (const pid_t waker = fork(); waker == 0) {
+  const pid_t waker = fork();
+  if (waker == 0) {
     ::close_range(3, ~0U, 0);
     timespec rest = pause;
     while (::nanosleep(&rest, &rest) != 0 && errno == EINTR) {
     }
-    ::kill(sleeper, SIGCONT);
+    while (::getppid() == sleeper) {
+      ::kill(sleeper, SIGCONT);
+      rest = {0, 10'000'000};
+      ::nanosleep(&rest, nullptr);
+    }
     ::_exit(0);
+  }
+  ::raise(SIGSTOP);
+  if (waker > 0) {
+    ::kill(waker, SIGKILL);
+    ::waitpid(waker, nullptr, 0);
   }
 }
 
@@ -73,8 +85,11 @@ void Service::strikeWhenReached(std::uint64_t step) {
   for (const Fault& fault : process_faults_) {
     if (!has_begun || step_ >= fault.from_step || step < fault.from_step) continue;
     if (fault.kind == FaultKind::kKill) ::raise(SIGKILL);
-    if (fault.seconds > 0.0) wakeUpAfter(fault.seconds);
-    ::raise(SIGSTOP);
+    if (fault.seconds > 0.0) {
+      standStillFor(fault.seconds);
+    } else {
+      ::raise(SIGSTOP);
+    }
   }
 }
 
@@ -348,7 +363,8 @@ void Service::awaitSignal() {
   });
 }
 
-/// In the middle of a run too what was sent is vouched for.
+/// In the middle of a run too what was sent is vouched for, and has arrived: with the process goes what it could send
+/// again.
 void Service::leave() {
   {
     const std::lock_guard lock(mutex_);
@@ -357,7 +373,9 @@ void Service::leave() {
   }
   using Clock = std::chrono::steady_clock;
   const Clock::time_point limit = Clock::now() + std::chrono::seconds(1);
-  for (dds::RawWriter* const writer : last_words_) {
+  std::vector<dds::RawWriter*> writers = last_words_;
+  writers.insert(writers.end(), outputs_.begin(), outputs_.end());
+  for (dds::RawWriter* const writer : writers) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(limit - Clock::now());
     if (left.count() <= 0) break;  // somebody who died without a word is not waited for
     writer->waitForAcknowledgments(static_cast<int>(left.count()));

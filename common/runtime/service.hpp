@@ -166,7 +166,7 @@ class Service {
   dds::Writer<msg::ServiceStatus>* status_ = nullptr;
   dds::Writer<msg::Event>* events_ = nullptr;
   dds::Writer<msg::ServiceManifest>* manifest_ = nullptr;
-  std::vector<dds::RawWriter*> last_words_;
+  std::vector<dds::RawWriter*> last_words_, outputs_;
   struct Rewinding {
     std::function<bool(std::uint64_t)> is_quiet;
     std::function<void()> forget;
@@ -232,6 +232,7 @@ dds::Writer<T>& Service::output(const dds::Topic<T>& topic, const std::vector<st
     if (raw->refused() == 0) return {};
     return "DDS refused " + std::to_string(raw->refused()) + " samples on " + raw->topic();
   });
+  outputs_.push_back(&writer->raw());
   endpoints_.push_back(writer);
   return *writer;
 }
