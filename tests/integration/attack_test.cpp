@@ -198,7 +198,7 @@ TEST(Attack, WhoNamesAnotherRunIsNoServiceOfThisOne) {
   const LiveRun run(bench, endlessContact());
   ASSERT_TRUE(eventually([&] { return states.raw().matched().size() > 3 && statuses.raw().matched().size() > 3; }));
   EXPECT_EQ(bench.baton({"controller", "stop", "pd"}).exit_code, 0);
-  EXPECT_TRUE(eventually([&] { return bench.baton({"controller", "start", "pd"}).exit_code == 0; }));
+  EXPECT_TRUE(bench.batonJson({"controller", "start", "pd", "--json"}).at("accepted"));
   EXPECT_TRUE(eventually([&] { return bench.baton({"swap", "pd", "--dry-run"}).exit_code == 0; }));
   const Finished down = bench.baton({"down", "--json"});
   EXPECT_EQ(down.exit_code, 0) << down.out << down.err;

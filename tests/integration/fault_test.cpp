@@ -29,8 +29,8 @@ TEST_P(KilledService, EndsTheRunWithAWordAndLeavesNothingBehind) {
   const Bench bench;
   const LiveRun run(bench, endlessContact());
   run.waitForStep(200);
+  EXPECT_TRUE(eventually([&] { return fs::file_size(run.recording) > 100'000; })) << "more than its attachments";
   const int pid = run.pidOf(GetParam());
-  ASSERT_GT(pid, 0);
   ASSERT_EQ(kill(pid, SIGKILL), 0);
 
   const nlohmann::json result = run.result();
@@ -292,7 +292,13 @@ TEST_P(RestartedPart, GoesOnAtTheStepThatWaitsForIt) {
   const int pid = run.pidOf(GetParam());
   ASSERT_EQ(kill(pid, SIGSTOP), 0);
   ASSERT_EQ(bench.baton({"sim", "resume"}).exit_code, 0);
-  EXPECT_TRUE(eventually([&] { return bench.batonJson({"status", "--json"}).at("waiting_for") != ""; }));
+  nlohmann::json before;
+  EXPECT_TRUE(eventually([&] {
+    nlohmann::json now = bench.batonJson({"status", "--json"});
+    const bool stands = before.is_object() && now.at("waiting_for") != "" && now.at("step") == before.at("step");
+    before = std::move(now);
+    return stands;
+  })) << before;
   ASSERT_EQ(kill(pid, SIGKILL), 0);
 
   const nlohmann::json result = run.result();

@@ -1,6 +1,7 @@
 // Handing over on real processes: options, dry runs, what is told of it, and the cases that are easy to get wrong.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 
@@ -62,7 +63,12 @@ TEST(Handover, ControllersShowWhatAHandoverNowWouldChangeAndWhyTheLastWasRefused
   const Bench bench;
   const LiveRun run(bench, atRest());
   EXPECT_EQ(bench.baton({"swap", "force"}).exit_code, 1);
-  const nlohmann::json controllers = bench.batonJson({"controllers", "--json"});
+  nlohmann::json controllers;
+  ASSERT_TRUE(eventually([&] {
+    controllers = bench.batonJson({"controllers", "--json"});
+    return std::ranges::none_of(
+        controllers, [](const auto& one) { return one.at("name") != "tracking" && one.at("forecast").is_null(); });
+  })) << controllers;
   ASSERT_EQ(controllers.size(), 5U);
   for (const auto& one : controllers) {
     const std::string name = one.at("name");

@@ -124,7 +124,6 @@ TEST(Param, WhatWasDecidedIsInTheRecording) {
 
 TEST(Param, AsSoonAsPossibleIsTheNextStepAlsoWhilePaused) {
   const PausedRun run("");
-  run.live.waitForStep(0);
   EXPECT_EQ(run.bench.baton({"sim", "step", "100"}).exit_code, 0);
   const std::uint64_t at_step = run.set({"tracking", "kp=200"}).at("at_step");
   EXPECT_GE(at_step, 100U);

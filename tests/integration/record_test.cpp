@@ -308,6 +308,7 @@ TEST(Record, TheStepsThatAreToldAreThoseOfTheHole) {
   for (int i = 0; i < 4; ++i) {
     const std::uint64_t paused = stepOf("pause");
     told.emplace_back(paused + 1, stepOf("resume"));
+    run.waitForStep(told.back().second + 50);  // so that each hole has an edge
   }
   const Finished down = bench.baton({"down"});
   EXPECT_EQ(down.exit_code, 0) << down.out << down.err;
@@ -406,7 +407,11 @@ TEST(Record, WhatIsLostInRealTimeIsCountedByWriterAndIsAGapInTheCertificate) {
   EXPECT_GT(status.at("losses").at(0).at("lost"), 0);
   // What was lost before a second file began is no loss of that one; of every stream it is noticed with the next
   // sample.
-  run.waitForStep(from + 11'000);
+  EXPECT_TRUE(eventually([&] {
+    status = bench.batonJson({"record", "status", "--json"});
+    return std::ranges::any_of(status.at("losses"), [](const auto& one) { return one.at("topic") == "plant_state"; });
+  })) << status;
+  run.waitForStep(bench.batonJson({"status", "--json"}).at("step").get<std::uint64_t>() + 3000);
   EXPECT_EQ(bench.baton({"record", "stop"}).exit_code, 0);
   const fs::path second = bench.folder() / "second.mcap";
   run.waitForStep(bench.batonJson({"status", "--json"}).at("step").get<std::uint64_t>() + 200);

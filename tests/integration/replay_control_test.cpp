@@ -355,6 +355,7 @@ TEST_F(ReplayControl, ALoopRepeatsBytesAndSourceTimes) {
 TEST_F(ReplayControl, WaitsForReadersByTheirNames) {
   start({writeNumbers(bench_, 50), "--wait-for-readers", "watcher,listener", "--rate", "max"});
   Listener listener(bench_, "listener");
+  ASSERT_TRUE(stands("waiting"));
   ASSERT_TRUE(eventually([&] { return player({"status"}).at("waiting_for") == "watcher to read a topic"; }));
   const Finished step = bench_.baton({"player", "step"});
   EXPECT_EQ(step.exit_code, 1) << step.out;
@@ -447,6 +448,10 @@ class OnTerminal {
     tcgetattr(terminal_, &attributes);
     return (attributes.c_lflag & ICANON) != 0 && (attributes.c_lflag & ECHO) != 0;
   }
+  [[nodiscard]] bool isStopped() const {
+    int how = 0;
+    return waitpid(pid_, &how, WUNTRACED | WNOHANG) == pid_ && WIFSTOPPED(how);
+  }
   int exitCode() {
     int how = 0;
     EXPECT_TRUE(eventually([&] { return waitpid(pid_, &how, WNOHANG) == pid_; }));
@@ -482,7 +487,8 @@ TEST_F(ReplayControl, ObeysKeysAndGivesTheTerminalBack) {
       return std::abs(player({"status"}).at("position_s").get<double>() - std::max(0.0, before_s - 1.0)) < 1e-6;
     }));
     replay.signal(SIGTSTP);  // Ctrl-Z
-    EXPECT_TRUE(eventually([&] { return replay.isAsFound(); }));
+    EXPECT_TRUE(eventually([&] { return replay.isStopped(); }));
+    EXPECT_TRUE(replay.isAsFound());
     replay.signal(SIGCONT);  // fg
     EXPECT_TRUE(eventually([&] { return !replay.isAsFound(); }));
     replay.strike("q");

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 
+#include "runtime/scenario_edit.hpp"
 #include "support/live_run.hpp"
 #include "support/processes.hpp"
 #include "support/recordings.hpp"
@@ -93,7 +94,7 @@ TEST(LatePolicy, WaitGoesOnWhereItWasHoweverLongItTook) {
 
 TEST(LatePolicy, FallbackGivesTheBatonToTheNext) {
   const Bench bench;
-  const SilentHolder silent(bench, "fallback", "2");
+  const SilentHolder silent(bench, "fallback", "10");
   const nlohmann::json result = silent.run.result();
   EXPECT_EQ(result.at("state"), "finished") << result;
   EXPECT_EQ(result.at("exit_code"), 1) << "a controller lost the baton: " << result;
@@ -105,7 +106,7 @@ TEST(LatePolicy, FallbackGivesTheBatonToTheNext) {
 
 TEST(LatePolicy, AbortEndsTheRunWithTheReason) {
   const Bench bench;
-  const SilentHolder silent(bench, "abort", "2");
+  const SilentHolder silent(bench, "abort", "10");
   const nlohmann::json result = silent.run.result();
   EXPECT_EQ(result.at("exit_code"), 4) << result;
   EXPECT_EQ(result.at("state"), "aborted") << result;
@@ -205,7 +206,10 @@ TEST(Reset, WhileTheRunGoesOn) {
   const std::string realtime = "mode: realtime\nmax_missed_steps: 1000000\n";
   for (const std::string& mode : {std::string("rate: max\n"), realtime}) {
     const Bench bench;
-    const LiveRun run(bench, restingContact(mode));  // where a busy machine's late commands move nothing
+    std::string scenario = restingContact(mode);  // where a busy machine's late commands move nothing
+    // A reset waits for a step that has all its inputs, which a busy machine may not have within half a millisecond.
+    if (mode == realtime) scenario = editScenario(scenario, {{"step_s", "0.01"}, {"substeps", "40"}});
+    const LiveRun run(bench, scenario);
     run.waitForStep(100);
     const nlohmann::json reset = bench.batonJson({"sim", "reset", "--json"});
     EXPECT_TRUE(reset.at("accepted")) << reset;

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -20,13 +22,18 @@ struct LiveRun {
     arguments.insert(arguments.end(), options.begin(), options.end());
     const Finished up = bench.baton(arguments);
     EXPECT_EQ(up.exit_code, 0) << up.out << up.err;
-    status = bench.batonJson({"status", "--json"});
+    // On a busy machine not every service has spoken when the command ends that asks for their status.
+    EXPECT_TRUE(eventually([&] {
+      status = bench.batonJson({"status", "--json"});
+      return std::ranges::all_of(status.at("services"), [](const auto& one) { return one.at("pid").is_number(); });
+    }));
   }
+  /// Throws where there is none: the number would be that of all processes.
   [[nodiscard]] int pidOf(const std::string& service) const {
     for (const auto& one : status.at("services")) {
-      if (one.at("name") == service && one.at("pid").is_number()) return one.at("pid");
+      if (one.at("name") == service) return one.at("pid");
     }
-    return -1;
+    throw std::runtime_error("no service " + service + ": " + status.dump());
   }
   void waitForStep(std::uint64_t step) const {
     EXPECT_TRUE(eventually([&] { return bench.batonJson({"status", "--json"}).at("step") >= step; }));

@@ -19,6 +19,15 @@ namespace baton::test {
 namespace fs = std::filesystem;
 namespace {
 
+// With nohup, and after a shell's &, programs ignore some signals, and so would those that the tests start.
+[[maybe_unused]] const bool kSignalsAsOnATerminal = [] {
+  for (const int number : {SIGHUP, SIGINT, SIGQUIT, SIGTERM}) signal(number, SIG_DFL);
+  return true;
+}();
+
+/// More than any program of a test takes, and less than CTest waits for a test.
+constexpr std::chrono::minutes kLongestProgram{7};
+
 std::string contentsOf(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
@@ -53,7 +62,7 @@ pid_t launch(const fs::path& program, const std::vector<std::string>& arguments,
 /// Returns the exit code. A program that hangs fails its test, with its last words, rather than CTest's patience.
 int waitFor(pid_t pid, const std::vector<fs::path>& outputs) {
   int how = 0;
-  if (!eventually([&] { return waitpid(pid, &how, WNOHANG) == pid; })) {
+  if (!eventually([&] { return waitpid(pid, &how, WNOHANG) == pid; }, kLongestProgram)) {
     kill(pid, SIGKILL);
     waitpid(pid, &how, 0);
     std::string words;
@@ -147,8 +156,8 @@ std::string Bench::write(const std::string& name, const std::string& text) const
   return file.string();
 }
 
-bool eventually(const std::function<bool()>& condition) {
-  const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(4);
+bool eventually(const std::function<bool()>& condition, std::chrono::minutes patience) {
+  const auto give_up = std::chrono::steady_clock::now() + patience;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > give_up) return false;
     usleep(10'000);

@@ -1,6 +1,7 @@
 /// Programs under test, run as a person runs them, each test in a folder and a DDS domain of its own.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -60,9 +61,10 @@ void standIn(const Bench& bench, const std::string& program, const std::string& 
 [[nodiscard]] Finished runProgram(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                                   const std::filesystem::path& home);
 
-/// Waits until `condition` holds, by looking at it again and again; false when it does not within four minutes, which
+/// Waits until `condition` holds, by looking at it again and again; false when it does not within the minutes, which
 /// fails a test that is broken and decides nothing about one that is not.
-[[nodiscard]] bool eventually(const std::function<bool()>& condition);
+[[nodiscard]] bool eventually(const std::function<bool()>& condition,
+                              std::chrono::minutes patience = std::chrono::minutes(4));
 
 /// Processes whose command line contains `text`.
 [[nodiscard]] std::vector<int> processesWith(const std::string& text);

@@ -123,11 +123,17 @@ TEST(ParticipantTest, PeersSayWhoTheyAreAndLeave) {
 /// Names are shown in logs and on terminals.
 TEST(ParticipantTest, AProcessWhoseNameWouldChangeATerminalIsNoneOfOurs) {
   Signal signal;
+  Watch watch(signal, "cell");
   Participant watcher(memberOptions("watcher", "cell"), [&](const Peer&) { signal.notify(); });
-  const Participant wrong(memberOptions("a\x1b[2J", "cell")), broken(memberOptions("\xff", "cell"));
-  const Participant right(memberOptions("right", "cell"));
+  watch.listenTo(watcher);
+  Participant wrong(memberOptions("a\x1b[2J", "cell")), broken(memberOptions("\xff", "cell"));
+  Participant right(memberOptions("right", "cell"));
+  const RawWriter first(wrong, {.topic = "first", .type = "Bytes"}),
+      second(broken, {.topic = "second", .type = "Bytes"});
   const auto isRight = [](const Peer& peer) { return peer.service == "right"; };
   ASSERT_TRUE(signal.waitUntil([&] { return std::ranges::any_of(watcher.peers(), isRight); }));
+  // A participant is met before its writers are.
+  ASSERT_TRUE(signal.waitUntil([&] { return watch.found().size() == 2; }));
   for (const Peer& peer : watcher.peers()) EXPECT_TRUE(isRight(peer)) << peer.service;
 }
 
