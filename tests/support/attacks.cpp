@@ -96,7 +96,7 @@ const Attack kAttacks[] = {
        msg::ServiceStatus ready = statusOf(holder, "controller", msg::SERVICE_READY, 1);
        stranger.say(dds::topics::kServiceStatus, ready);
        stranger.say(dds::topics::kServiceStatus,
-                    statusOf(holder, "controller", msg::SERVICE_FAILED, run.pidOf(holder)));
+                    statusOf(holder, "controller", msg::SERVICE_FAILED, holder.empty() ? 0 : run.pidOf(holder)));
        msg::ControllerStatus standby;
        standby.name(holder);
        standby.state(msg::CONTROLLER_STANDBY);
