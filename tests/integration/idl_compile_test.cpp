@@ -1,4 +1,4 @@
-// idl/compile.sh, beside which programs of this test's own may stand in for fastddsgen.
+// idl/compile.sh with fastddsgen, and with scripts in its place.
 #include <gtest/gtest.h>
 
 #include <filesystem>
