@@ -173,7 +173,7 @@ struct RawReader::Impl final : DataReaderListener {
                              .reception_timestamp_ns = info.reception_timestamp.to_ns(),
                              .writer = toGuid(info.sample_identity.writer_guid()),
                              .has_data = info.valid_data};
-      if (!isAdmitted(sample.writer)) {
+      if (filter && !filter(sample.writer)) {
         ++refused;
       } else if (is_keyed) {
         burst.push_back({sample, incoming.payload});
@@ -195,12 +195,6 @@ struct RawReader::Impl final : DataReaderListener {
     }
     burst.clear();
   }
-  bool isAdmitted(const Guid& writer) {
-    if (!filter || admitted.contains(writer)) return true;
-    if (!filter(writer)) return false;
-    admitted.insert(writer);
-    return true;
-  }
   void on_subscription_matched(DataReader*, const SubscriptionMatchedStatus& status) override {
     matches.change(status.last_publication_handle, status.current_count_change);
     if (on_match) on_match();
@@ -213,7 +207,6 @@ struct RawReader::Impl final : DataReaderListener {
   Callback callback;
   MatchCallback on_match;
   WriterFilter filter;
-  std::set<Guid> admitted;  // of the thread that takes samples
   std::atomic<std::uint64_t> refused{0};
   Matches matches;
   RawType::Incoming incoming;  // reused: taking a sample allocates only when one is larger than all before

@@ -37,7 +37,7 @@ struct EndpointOptions {
 
 /// Called when a counterpart is matched or lost, on a DDS thread.
 using MatchCallback = std::function<void()>;
-/// Whether samples of this writer are wanted; asked for each sample until the answer is yes.
+/// Whether samples of this writer are wanted; asked for each sample, by the thread that takes it.
 using WriterFilter = std::function<bool(const Guid& writer)>;
 
 class RawWriter {

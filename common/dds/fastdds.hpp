@@ -139,11 +139,11 @@ inline void deliverThroughTheTransport() {
 #endif
 }
 
-/// Creates a participant whose GUID prefix is what `name` makes of the one that the product chose. Returns nullptr when
-/// the product refuses.
-inline dds::DomainParticipant* createParticipant(int domain, dds::DomainParticipantQos qos,
-                                                 dds::DomainParticipantListener* listener,
-                                                 const std::function<void(rtps::GuidPrefix_t&)>& name) {
+/// Creates a participant whose GUID prefix is what `introduce` makes of the one that the product chose, with what it
+/// adds to the QoS, as far as that depends on the prefix. Returns nullptr when the product refuses.
+inline dds::DomainParticipant* createParticipant(
+    int domain, dds::DomainParticipantQos qos, dds::DomainParticipantListener* listener,
+    const std::function<void(rtps::GuidPrefix_t&, dds::DomainParticipantQos&)>& introduce) {
   // A participant that is not enabled yet has a prefix and can be given another.
   auto* const factory = dds::DomainParticipantFactory::get_instance();
   dds::DomainParticipantFactoryQos factory_qos;
@@ -155,7 +155,7 @@ inline dds::DomainParticipant* createParticipant(int domain, dds::DomainParticip
   if (participant == nullptr) return nullptr;
   const rtps::GuidPrefix_t chosen = participant->guid().guidPrefix;
   rtps::GuidPrefix_t prefix = chosen;
-  name(prefix);
+  introduce(prefix, qos);
   if (prefix != chosen) qos.wire_protocol().prefix = prefix;
   if (isDone(participant->set_qos(qos)) && isDone(participant->enable())) return participant;
   factory->delete_participant(participant);

@@ -1,6 +1,7 @@
 #include "dds/participant.hpp"
 
 #include <arpa/inet.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -31,10 +32,13 @@ constexpr int kMaxDomain = 232;
 constexpr std::size_t kMaxKnown = 10'000;  // of peers, and of strangers: a flood of them must not fill the memory
 constexpr int kSocketBuffer = 4 << 20;     // loopback UDP loses datagrams when a busy receiver's buffer is full
 
-// Discovery data of a Baton process: one field a line.
-std::string encodePeer(const Peer& peer) {
-  return "baton\n" + peer.cell + "\n" + peer.run + "\n" + peer.service + "\n" + std::to_string(peer.started_ns);
+// Discovery data of a Baton process: one field a line, then the proof of them.
+std::string fieldsOf(const Peer& peer) {
+  return "baton\n" + peer.cell + "\n" + peer.run + "\n" + peer.service + "\n" + std::to_string(peer.started_ns) + "\n" +
+         std::to_string(peer.pid) + "\n";
 }
+
+std::string encodePeer(const Peer& peer) { return fieldsOf(peer) + peer.proof; }
 
 std::optional<Peer> decodePeer(const std::string& text, const GuidPrefix& prefix) {
   std::istringstream lines(text);
@@ -45,10 +49,13 @@ std::optional<Peer> decodePeer(const std::string& text, const GuidPrefix& prefix
   std::getline(lines, peer.cell);
   std::getline(lines, peer.run);
   std::getline(lines, peer.service);
-  lines >> peer.started_ns;
+  lines >> peer.started_ns >> peer.pid;
   // They are shown in logs and on terminals. Ours have no such characters.
   const std::string names = peer.cell + peer.run + peer.service;
-  return lines.fail() || escaped(names) != names ? std::nullopt : std::optional(peer);
+  if (lines.fail() || escaped(names) != names) return std::nullopt;
+  std::getline(lines, tag);  // what is left of the line
+  std::getline(lines, peer.proof);
+  return peer;
 }
 
 /// BATON_LOSE_ONE_IN=N in the environment: of N datagrams sent one, on average, is thrown away, to show what a bad
@@ -152,11 +159,11 @@ std::string policiesText(const fastdds::PublicationData& qos) {
 
 GuidPrefix toPrefix(const rtps::GUID_t& guid) { return prefixOf(toGuid(guid)); }
 
-DomainParticipantQos participantQos(const ParticipantOptions& options, const Peer& self) {
+void say(const std::string& data, DomainParticipantQos& qos) { qos.user_data().data_vec({data.begin(), data.end()}); }
+
+DomainParticipantQos participantQos(const ParticipantOptions& options) {
   DomainParticipantQos qos = DomainParticipantFactory::get_instance()->get_default_participant_qos();
   qos.name(options.service);
-  const std::string data = encodePeer(self);
-  qos.user_data().data_vec({data.begin(), data.end()});
 
   qos.transport().use_builtin_transports = false;
   const std::uint64_t one_in = loseOneIn();
@@ -208,17 +215,19 @@ Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_
   }
   expectUp(options.addresses, interfaces());
   [[maybe_unused]] static const bool is_first = (ignoreForeignSettings(), true);
-  self = {.cell = options.cell, .run = options.run, .service = options.service, .started_ns = clock.now()};
-  participant = fastdds::createParticipant(options.domain, participantQos(options, self), this,
-                                           [this](rtps::GuidPrefix_t& prefix) {
-                                             if (!key) return;
-                                             GuidPrefix marked{};
-                                             std::copy_n(prefix.value, marked.size(), marked.begin());
-                                             marked = key->marked(marked);
-                                             std::ranges::copy(marked, prefix.value);
-                                           });
+  self = {
+      .cell = options.cell, .run = options.run, .service = options.service, .started_ns = clock.now(), .pid = getpid()};
+  const auto introduce = [&](rtps::GuidPrefix_t& prefix, DomainParticipantQos& qos) {
+    std::copy_n(prefix.value, self.prefix.size(), self.prefix.begin());
+    if (key) {
+      self.prefix = key->marked(self.prefix, options.role);
+      self.proof = key->proofOf(self.prefix, fieldsOf(self));
+      std::ranges::copy(self.prefix, prefix.value);
+    }
+    say(encodePeer(self), qos);
+  };
+  participant = fastdds::createParticipant(options.domain, participantQos(options), this, introduce);
   if (participant == nullptr) refuse("a participant in domain " + std::to_string(options.domain));
-  self.prefix = toPrefix(participant->guid());
   PublisherQos publisher_qos = participant->get_default_publisher_qos();
   SubscriberQos subscriber_qos = participant->get_default_subscriber_qos();
   publisher_qos.partition().push_back(options.partition.c_str());
@@ -237,22 +246,34 @@ Participant::Impl::~Impl() {
   DomainParticipantFactory::get_instance()->delete_participant(participant);
 }
 
+void Participant::Impl::forget(const GuidPrefix& prefix) {
+  strangers.erase(prefix);
+  peers.erase(prefix);
+  if (key && key->roleOf(prefix) && departed.insert(prefix).second) ++departures;
+}
+
 void Participant::Impl::onParticipantGone(const rtps::GUID_t& guid) {
   const std::lock_guard lock(mutex);
-  peers.erase(toPrefix(guid));
-  strangers.erase(toPrefix(guid));
+  forget(toPrefix(guid));
 }
 
 void Participant::Impl::onParticipant(const fastdds::ParticipantData& data) {
   const GuidPrefix prefix = toPrefix(data.guid);
+  const bool is_marked = key && key->roleOf(prefix);
   std::optional<Peer> peer = decodePeer({data.user_data.begin(), data.user_data.end()}, prefix);
-  if (!peer) return;
-  peer->is_stranger = key && peer->cell == self.cell && peer->run == self.run && !key->isMarked(prefix);
+  if (!peer && !is_marked) return;
+  if (!peer) peer.emplace().prefix = prefix;
+  const bool is_ours = peer->cell == self.cell && peer->run == self.run;
+  const bool is_proven = key && is_ours && isProven(*peer, *key);
+  peer->is_stranger = key && (is_ours || is_marked) && !is_proven;
   {
     const std::lock_guard lock(mutex);
+    if (departed.contains(prefix)) peer->is_stranger = true;
     auto& known = peer->is_stranger ? strangers : peers;
     if (const auto found = known.find(prefix); found != known.end() && found->second == *peer) return;  // said again
-    if (known.size() < kMaxKnown) known[prefix] = *peer;
+    if (is_marked && peers.contains(prefix)) return;  // a member is who it was when it came
+    if (is_proven || known.size() < kMaxKnown) known[prefix] = *peer;
+    if (!peer->is_stranger) strangers.erase(prefix);
   }
   if (on_peer) on_peer(*peer);
 }
@@ -325,7 +346,23 @@ std::optional<Peer> Participant::stranger(const GuidPrefix& prefix) const {
 
 bool Participant::hasKey() const { return impl_->key.has_value(); }
 
-bool Participant::isMember(const GuidPrefix& prefix) const { return !impl_->key || impl_->key->isMarked(prefix); }
+std::optional<Role> Participant::roleOf(const GuidPrefix& prefix) const {
+  if (!impl_->key) return std::nullopt;
+  {
+    const std::lock_guard lock(impl_->mutex);
+    if (impl_->departed.contains(prefix) || impl_->strangers.contains(prefix)) return std::nullopt;
+  }
+  return impl_->key->roleOf(prefix);
+}
+
+bool Participant::isMember(const GuidPrefix& prefix) const { return !impl_->key || roleOf(prefix).has_value(); }
+
+void Participant::bury(const GuidPrefix& prefix) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->forget(prefix);
+}
+
+std::uint64_t Participant::departures() const { return impl_->departures; }
 
 std::vector<Peer> Participant::peers() const {
   const std::lock_guard lock(impl_->mutex);
@@ -350,10 +387,13 @@ const Peer& Participant::self() const { return impl_->self; }
 
 void Participant::announce() {
   // DDS sends changed user data to every participant. decodePeer() ignores what follows the last field.
-  const std::string data = encodePeer(impl_->self) + "\n" + std::to_string(++impl_->announcements);
   DomainParticipantQos qos = impl_->participant->get_qos();
-  qos.user_data().data_vec({data.begin(), data.end()});
+  say(encodePeer(impl_->self) + "\n" + std::to_string(++impl_->announcements), qos);
   impl_->participant->set_qos(qos);
+}
+
+bool isProven(const Peer& peer, const RunKey& key) {
+  return key.roleOf(peer.prefix) && key.proofOf(peer.prefix, fieldsOf(peer)) == peer.proof;
 }
 
 bool isElder(const Peer& a, const Peer& b) {

@@ -26,6 +26,7 @@ struct ParticipantOptions {
   std::vector<std::string> other_cells{};         // to find at once; any other is found when it announces itself again
   std::string run;      // the run within the cell; what is left over from another run is told apart by this
   std::string service;  // name of the service, unique in the run
+  Role role = Role::kOperator;
   Transport transport = Transport::kUdp;
   std::optional<RunKey> key{};  // of the run; without one, everybody is taken for who they say they are
   WallClock clock{};            // of the run: what is sent has its time stamps
@@ -37,12 +38,16 @@ struct Peer {
   std::string run;
   std::string service;
   std::int64_t started_ns = 0;  // since the epoch, by the clock of its run
+  int pid = 0;
+  std::string proof{};  // that all this was said by who has the key of that run; empty where it has none
   GuidPrefix prefix{};
-  bool is_stranger = false;  // claims to be of our run, and does not have its key
+  bool is_stranger = false;  // says that it is of our run, or bears its mark, and cannot prove it
   bool operator==(const Peer&) const = default;
 };
 /// The same answer in every process that asks. Clocks of different hosts must agree better than people start things.
 [[nodiscard]] bool isElder(const Peer& a, const Peer& b);
+/// Whether it has said what it says with this key, of its run.
+[[nodiscard]] bool isProven(const Peer& peer, const RunKey& key);
 
 /// A writer somebody has, ours or not, found by discovery.
 struct DiscoveredWriter {
@@ -83,8 +88,16 @@ class Participant {
   /// What a stranger calls itself, if discovery has told.
   [[nodiscard]] std::optional<Peer> stranger(const GuidPrefix& prefix) const;
   [[nodiscard]] bool hasKey() const;
-  /// Whether it has our run's key. Everybody has, where we have none.
+  /// What a participant is in our run, by the mark of its prefix: nothing for one of another run, one that cannot prove
+  /// what it says of itself, and one that has left or was buried, since who comes under its prefix later is another.
+  /// Nothing, where we have no key. Who copies the prefix and the words of one that is alive is not told from it.
+  [[nodiscard]] std::optional<Role> roleOf(const GuidPrefix& prefix) const;
+  /// Whether it is of our run. Everybody is, where we have no key.
   [[nodiscard]] bool isMember(const GuidPrefix& prefix) const;
+  /// Its process has ended without a farewell.
+  void bury(const GuidPrefix& prefix);
+  /// How many members have left or were buried: while this is the same, so is what roleOf() says of members.
+  [[nodiscard]] std::uint64_t departures() const;
   /// Whether a sample comes from a second copy of a service that has not given way yet. Not for services that may be
   /// started again: a process that was killed is remembered for the length of its lease.
   [[nodiscard]] bool isSecondCopy(const Guid& writer) const;

@@ -1,8 +1,10 @@
 /// The Fast DDS side of a participant. Private to common/dds.
 #pragma once
 
+#include <atomic>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "dds/fastdds.hpp"
@@ -19,6 +21,9 @@ struct Participant::Impl final : fastdds::DiscoveryListener {
   void onWriter(const fastdds::PublicationData& data) override;
   void onWriterGone(const fastdds::rtps::GUID_t& guid) override;
 
+  /// Takes a participant away; of a member it is remembered. Under `mutex`.
+  void forget(const GuidPrefix& prefix);
+
   /// The topic of this name and type, created on first use and shared by readers and writers.
   fastdds::dds::Topic* topic(const std::string& name, const std::string& type, std::uint32_t max_payload, bool keyed);
 
@@ -30,9 +35,11 @@ struct Participant::Impl final : fastdds::DiscoveryListener {
   fastdds::dds::DomainParticipant* participant = nullptr;
   fastdds::dds::Publisher* publisher = nullptr;
   fastdds::dds::Subscriber* subscriber = nullptr;
+  std::atomic<std::uint64_t> departures = 0;
   mutable std::mutex mutex;  // guards what follows; discovery runs on a DDS thread
   std::map<GuidPrefix, Peer> peers;
   std::map<GuidPrefix, Peer> strangers;  // some of them
+  std::set<GuidPrefix> departed;         // members that have left
   std::map<Guid, DiscoveredWriter> writers;
   std::mutex watch_mutex;  // held while on_writer is called, so that it can be taken away; never taken after `mutex`
   WriterCallback on_writer;

@@ -5,6 +5,7 @@
 #include <array>
 #include <string_view>
 
+#include "dds/roles.hpp"
 #include "dds/types.hpp"
 #include "msg/checkpoint.h"
 #include "msg/decision.h"
@@ -21,9 +22,6 @@ namespace baton::dds {
 /// reads them. Samples of other writers are recorded from when the writer is discovered, unless the writer itself waits
 /// for the recorder, as controllers do with `checkpoint` and `decision`.
 enum class RecordedFrom { kNobody, kPlant, kTrajectory, kEnvironment, kControllers, kServices };
-
-/// Whose words count there. Operators' topics are everybody's: what the supervisor asks, too.
-enum class WrittenBy { kPlant, kEnvironment, kTrajectory, kControllers, kServices, kOperators };
 
 struct TopicFacts {
   const char* name;
@@ -65,16 +63,16 @@ struct Topic : TopicFacts {};
   TOPIC(kParameterReply,   "parameter_reply",    ParameterReply,   kEvent,   kControllers, kNobody)      \
   TOPIC(kDecision,         "decision",           Decision,         kEvent,   kServices,    kPlant)       \
   TOPIC(kLaunchRequest,    "launch_request",     LaunchRequest,    kRequest, kOperators,   kNobody)      \
-  TOPIC(kLaunchReply,      "launch_reply",       LaunchReply,      kEvent,   kServices,    kNobody)      \
+  TOPIC(kLaunchReply,      "launch_reply",       LaunchReply,      kEvent,   kSupervisor,  kNobody)      \
   TOPIC(kServiceStatus,    "service_status",     ServiceStatus,    kStatus,  kServices,    kNobody)      \
   TOPIC(kServiceManifest,  "service_manifest",   ServiceManifest,  kEvent,   kServices,    kServices)    \
   TOPIC(kEvent,            "event",              Event,            kEvent,   kServices,    kServices)    \
-  TOPIC(kRecorderStatus,   "recorder_status",    RecorderStatus,   kStatus,  kServices,    kNobody)      \
+  TOPIC(kRecorderStatus,   "recorder_status",    RecorderStatus,   kStatus,  kRecorder,    kNobody)      \
   TOPIC(kRecordRequest,    "record_request",     RecordRequest,    kRequest, kOperators,   kNobody)      \
-  TOPIC(kRecordReply,      "record_reply",       RecordReply,      kRequest, kServices,    kNobody)      \
-  TOPIC(kReplayStatus,     "replay_status",      ReplayStatus,     kStatus,  kServices,    kNobody)      \
+  TOPIC(kRecordReply,      "record_reply",       RecordReply,      kRequest, kRecorder,    kNobody)      \
+  TOPIC(kReplayStatus,     "replay_status",      ReplayStatus,     kStatus,  kReplayer,    kNobody)      \
   TOPIC(kReplayRequest,    "replay_request",     ReplayRequest,    kRequest, kOperators,   kNobody)      \
-  TOPIC(kReplayReply,      "replay_reply",       ReplayReply,      kRequest, kServices,    kNobody)
+  TOPIC(kReplayReply,      "replay_reply",       ReplayReply,      kRequest, kReplayer,    kNobody)
 // clang-format on
 
 namespace topics {

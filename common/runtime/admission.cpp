@@ -1,20 +1,13 @@
 #include "runtime/admission.hpp"
 
 #include <algorithm>
-#include <array>
+#include <utility>
 
+#include "runtime/processes.hpp"
 #include "runtime/service_options.hpp"
 
 namespace baton {
 namespace {
-
-bool isOperator(std::string_view service) { return service.starts_with(kOperatorPrefix); }
-
-bool isController(std::string_view service) {
-  constexpr std::array<std::string_view, 5> kOthers{kPlantName, kEnvironmentName, kTrajectoryName, kRecorderName,
-                                                    kSupervisorName};
-  return !isOperator(service) && std::ranges::find(kOthers, service) == kOthers.end();
-}
 
 /// The service whose topic it is; empty where several may write.
 const char* soleWriter(dds::WrittenBy who) {
@@ -27,19 +20,6 @@ const char* soleWriter(dds::WrittenBy who) {
 }
 
 }  // namespace
-
-bool mayWrite(dds::WrittenBy who, std::string_view service) {
-  if (service == kSupervisorName) return true;
-  switch (who) {
-    case dds::WrittenBy::kPlant: return service == kPlantName;
-    case dds::WrittenBy::kEnvironment: return service == kEnvironmentName;
-    case dds::WrittenBy::kTrajectory: return service == kTrajectoryName;
-    case dds::WrittenBy::kControllers: return isController(service);
-    case dds::WrittenBy::kServices: return !isOperator(service);
-    case dds::WrittenBy::kOperators: return true;
-  }
-  return false;
-}
 
 bool yieldsTo(const dds::Peer& self, const dds::Peer& other, bool is_believed, bool has_begun) {
   const bool is_namesake = other.cell == self.cell && other.service == self.service;
@@ -59,7 +39,8 @@ bool Admission::admits(const dds::TopicFacts& topic, const dds::Guid& writer) {
   const dds::GuidPrefix prefix = dds::prefixOf(writer);
   if (is_open_ && topic.written_by == dds::WrittenBy::kOperators) return true;
   if (!participant_.hasKey()) return true;
-  if (!participant_.isMember(prefix)) {
+  const auto role = participant_.roleOf(prefix);
+  if (!role) {
     const auto claim = participant_.stranger(prefix);
     tellOnce(prefix, "a stranger writes on " + std::string(topic.name) +
                          (claim ? " and calls itself " + claim->service : "") + ": participant " +
@@ -67,15 +48,38 @@ bool Admission::admits(const dds::TopicFacts& topic, const dds::Guid& writer) {
     return false;
   }
   const auto peer = participant_.peer(prefix);
-  // It has the key; its name may still be on its way.
-  if (!peer || mayWrite(topic.written_by, peer->service)) return true;
-  tellOnce(prefix, peer->service + " writes on " + topic.name + ", which is not its topic, and is not heard there");
+  // Nobody watches commands, and one may have been killed.
+  if (role == dds::Role::kOperator && peer && !isRunning(peer->pid)) return false;
+  if (mayWrite(topic.written_by, *role)) return true;
+  tellOnce(prefix, (peer ? peer->service : dds::toString(prefix)) + " writes on " + topic.name +
+                       ", which is not its topic, and is not heard there");
   return false;
 }
 
+dds::WriterFilter Admission::filter(const dds::TopicFacts& topic) {
+  if (topic.written_by == dds::WrittenBy::kOperators) {
+    return [this, topic](const dds::Guid& writer) { return admits(topic, writer); };
+  }
+  return [this, topic, known = std::set<dds::Guid>(), departures = std::uint64_t{0}](const dds::Guid& writer) mutable {
+    if (const std::uint64_t now = participant_.departures(); std::exchange(departures, now) != now) known.clear();
+    if (known.contains(writer)) return true;
+    if (!admits(topic, writer)) return false;
+    known.insert(writer);
+    return true;
+  };
+}
+
+bool Admission::speaksFor(const dds::Guid& writer, std::string_view service) const {
+  const dds::GuidPrefix prefix = dds::prefixOf(writer);
+  if (!participant_.hasKey() || participant_.roleOf(prefix) == dds::Role::kSupervisor) return true;
+  const auto peer = participant_.member(prefix);
+  return peer && peer->service == service;
+}
+
 void Admission::met(const dds::Peer& stranger) {
-  tellOnce(stranger.prefix, "a stranger calls itself " + stranger.service + " of run " + stranger.run +
-                                ": participant " + dds::toString(stranger.prefix) +
+  const std::string claim = stranger.service.empty() ? " bears the mark of this run and does not say who it is"
+                                                     : " calls itself " + stranger.service + " of run " + stranger.run;
+  tellOnce(stranger.prefix, "a stranger" + claim + ": participant " + dds::toString(stranger.prefix) +
                                 " has not the run's key and is not heard");
 }
 

@@ -1,5 +1,5 @@
 /// Who is heard on which topic of a run. In one place for every input of every service: a sample counts when its writer
-/// has the run's key and is, by name, a service whose topic it is.
+/// has the run's key and its role is one whose topic it is.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,6 @@ namespace baton {
 
 /// How many an event is written of: a flood of them must not flood the recording.
 inline constexpr std::size_t kMaxStrangersTold = 20;
-
-/// Whether a service of that name has anything to say there. The supervisor speaks for services that have died.
-[[nodiscard]] bool mayWrite(dds::WrittenBy who, std::string_view service);
 
 /// "trajectory sent reference of step 601, which cannot be used: its position is not finite"; empty for a topic that
 /// is not one service's alone.
@@ -42,10 +39,11 @@ class Admission {
 
   /// Any thread. Without a key everybody is heard.
   [[nodiscard]] bool admits(const dds::TopicFacts& topic, const dds::Guid& writer);
-  /// The same as a filter for a reader of that topic, which does not outlive this.
-  [[nodiscard]] dds::WriterFilter filter(const dds::TopicFacts& topic) {
-    return [this, topic](const dds::Guid& writer) { return admits(topic, writer); };
-  }
+  /// The same as a filter for a reader of that topic, which does not outlive this. Of services it asks once for each
+  /// writer, and again when somebody has left; of operators each time.
+  [[nodiscard]] dds::WriterFilter filter(const dds::TopicFacts& topic);
+  /// Whether the word of this writer counts where it concerns `service`: it is that one, or the supervisor.
+  [[nodiscard]] bool speaksFor(const dds::Guid& writer, std::string_view service) const;
   /// It is there and says that it is of our run.
   void met(const dds::Peer& stranger);
 

@@ -13,6 +13,7 @@
 #include "base/text.hpp"
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/processes.hpp"
 #include "runtime/service_options.hpp"
 
 namespace baton {
@@ -145,7 +146,7 @@ dds::RunKey readKey(const std::string& file) {
 bool isOfThisUser(const dds::Peer& peer) {
   if (!isFileName(peer.run, "")) return false;  // it comes from outside
   try {
-    return readKey((stateFolder() / "runs" / peer.run / "key").string()).isMarked(peer.prefix);
+    return isProven(peer, readKey((stateFolder() / "runs" / peer.run / "key").string())) && isRunning(peer.pid);
   } catch (const Error&) {
     return false;
   }
@@ -158,6 +159,7 @@ dds::ParticipantOptions operatorOf(const RunInfo& info) {
           .cell = info.cell,
           .run = info.run,
           .service = kOperatorPrefix + std::to_string(getpid()),
+          .role = dds::Role::kOperator,
           .transport = info.transport,
           .key = !info.folder.empty() && fs::exists(file) ? std::optional(readKey(file)) : std::nullopt,
           .clock = info.clock};

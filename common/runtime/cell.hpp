@@ -61,7 +61,8 @@ void makePrivateFolder(const std::filesystem::path& folder);
 [[nodiscard]] std::string keyFile(const RunInfo& info);
 void makeKeyWhenMissing(const RunInfo& info);
 [[nodiscard]] dds::RunKey readKey(const std::string& file);
-/// Whether a process has the key of the run it calls its own, by that run's folder: a run of this user's, then.
+/// Whether a process that runs has the key of the run it calls its own, by that run's folder: a run of this user's,
+/// then.
 [[nodiscard]] bool isOfThisUser(const dds::Peer& peer);
 /// Of a process of ours that watches or operates a run; without a key where the run has none.
 [[nodiscard]] dds::ParticipantOptions operatorOf(const RunInfo& info);

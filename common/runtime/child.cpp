@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <linux/close_range.h>
 #include <sys/prctl.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,6 +17,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "runtime/processes.hpp"
 
 namespace baton {
 namespace asio = boost::asio;
@@ -48,10 +48,6 @@ struct ChildSetup : process::extend::handler {
     ::close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   }
 };
-
-/// A descriptor that becomes readable when the process ends. The system call itself, as older C libraries lack the
-/// function.
-int openPidfd(pid_t pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
 
 }  // namespace
 

@@ -11,6 +11,7 @@
 #include "runtime/paths.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/scenario_parts.hpp"
+#include "runtime/service_options.hpp"
 #include "runtime/yaml.hpp"
 #include "time/pacer.hpp"
 
@@ -114,10 +115,7 @@ ControllerConfig readController(const YamlNode& node, const Scenario& scenario) 
   const YamlMap map = node.map({"name", "law", "parameters"});
   ControllerConfig controller;
   controller.name = map["name"].name();
-  // The other services of a run go by these names.
-  static const std::vector<std::string> kTaken{"plant",    "environment", "trajectory",
-                                               "recorder", "replayer",    "supervisor"};
-  if (std::find(kTaken.begin(), kTaken.end(), controller.name) != kTaken.end()) {
+  if (roleCalled(controller.name) != dds::Role::kController) {
     map["name"].refuse("a name that is not that of another service of the run");
   }
   for (const ControllerConfig& other : scenario.controllers) {

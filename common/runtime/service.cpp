@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "runtime/cell.hpp"
+#include "runtime/processes.hpp"
 #include "runtime/signals.hpp"
 
 namespace baton {
@@ -121,8 +122,9 @@ bool Service::isRival(const dds::Peer& peer) const {
 
 void Service::giveWayToElders() {
   for (const dds::Peer& peer : participant_.peers()) {
-    const bool is_believed = participant_.isMember(peer.prefix) || isOfThisUser(peer);
-    if (!yieldsTo(participant_.self(), peer, is_believed, ready_)) continue;
+    // Whom to believe is dearer to find out than whether it matters.
+    if (!yieldsTo(participant_.self(), peer, true, ready_)) continue;
+    if (!participant_.isMember(peer.prefix) && !isOfThisUser(peer)) continue;
     return giveWay(peer.run == options_.run ? "run " + peer.run + " has its " + peer.service + " already"
                                             : "cell " + peer.cell + " has a plant of run " + peer.run +
                                                   " already: end that run or choose another --cell");
@@ -131,6 +133,12 @@ void Service::giveWayToElders() {
 
 void Service::peerJoined(const dds::Peer& peer) {
   if (peer.is_stranger) return admission_.met(peer);
+  if (participant_.hasKey() && participant_.isMember(peer.prefix) && roleCalled(peer.service) != dds::Role::kOperator) {
+    whenEnded(executor_, peer.pid, [this, peer] {
+      participant_.bury(peer.prefix);
+      spdlog::info("{} has ended (process {})", peer.service, peer.pid);
+    });
+  }
   announcer_.greet();
   checkBarrier();
   if (!gave_way_ && isRival(peer) && rivals_told_++ < kMaxStrangersTold) {

@@ -1,6 +1,8 @@
 #include "runtime/service_options.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "runtime/cell.hpp"
 #include "runtime/command_line.hpp"
@@ -13,6 +15,7 @@ dds::ParticipantOptions ServiceOptions::participant() const {
           .cell = cell,
           .run = run,
           .service = name,
+          .role = roleCalled(name),
           .transport = transport,
           .key = key_file.empty() ? std::nullopt : std::optional(readKey(key_file)),
           .clock = clock};
@@ -103,6 +106,19 @@ std::vector<std::string> withRecorder(std::vector<std::string> names, const Scen
 std::vector<std::string> withSupervisor(std::vector<std::string> names, const ServiceOptions& options) {
   if (options.supervised) names.emplace_back(kSupervisorName);
   return names;
+}
+
+dds::Role roleCalled(std::string_view service) {
+  using enum dds::Role;
+  constexpr std::array<std::pair<std::string_view, dds::Role>, 6> kRoles{{{kPlantName, kPlant},
+                                                                          {kEnvironmentName, kEnvironment},
+                                                                          {kTrajectoryName, kTrajectory},
+                                                                          {kRecorderName, kRecorder},
+                                                                          {kReplayerName, kReplayer},
+                                                                          {kSupervisorName, kSupervisor}}};
+  if (service.starts_with(kOperatorPrefix)) return kOperator;
+  const auto found = std::ranges::find(kRoles, service, &std::pair<std::string_view, dds::Role>::first);
+  return found == kRoles.end() ? kController : found->second;
 }
 
 }  // namespace baton

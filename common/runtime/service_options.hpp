@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dds/participant.hpp"
@@ -57,8 +58,12 @@ inline constexpr const char* kEnvironmentName = "environment";
 inline constexpr const char* kTrajectoryName = "trajectory";
 inline constexpr const char* kRecorderName = "recorder";
 inline constexpr const char* kSupervisorName = "supervisor";
+inline constexpr const char* kReplayerName = "replayer";
 /// Who speaks in the manifest of a service that gave way: the service's own name is the other one's.
 inline constexpr const char* kSecondCopyName = "a second copy";
 inline constexpr const char* kOperatorPrefix = "operator-";
+
+/// What a process of that name is in a run: a controller, unless the name is one of the above.
+[[nodiscard]] dds::Role roleCalled(std::string_view service);
 
 }  // namespace baton

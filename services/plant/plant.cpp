@@ -83,8 +83,9 @@ Plant::Plant(Service& service)
                     proceed();
                   });
   }
-  service.input(dds::topics::kRewindAck, {},
-                [this](const msg::RewindAck& ack, const dds::RawSample&) { onRewindAck(ack); });
+  service.input(dds::topics::kRewindAck, {}, [this](const msg::RewindAck& ack, const dds::RawSample& sample) {
+    if (service_.admission().speaksFor(sample.writer, ack.name().c_str())) onRewindAck(ack);
+  });
   service.onReady([this] {
     const std::lock_guard lock(service_.mutex());
     startWhenAllAreReady();

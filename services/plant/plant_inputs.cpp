@@ -87,6 +87,7 @@ void Plant::endAtBadInput() {
 
 void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSample& sample) {
   const std::string name = status.name().c_str();
+  if (!service_.admission().speaksFor(sample.writer, name)) return;
   if (status.refused_topic().size() > 0) {
     const std::string text =
         badInputText(status.refused_topic().c_str(), status.refused_step(), status.refusal().c_str());

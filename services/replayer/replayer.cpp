@@ -9,6 +9,7 @@
 
 #include "dds/interfaces.hpp"
 #include "runtime/cell.hpp"
+#include "runtime/service_options.hpp"
 
 namespace baton {
 namespace {
@@ -28,7 +29,8 @@ dds::ParticipantOptions participantOptions(const ReplayOptions& options, const d
                                 .addresses = dds::addressesOf(options.interfaces, dds::interfaces()),
                                 .cell = options.cell,
                                 .run = options.run,
-                                .service = "replayer",
+                                .service = kReplayerName,
+                                .role = dds::Role::kReplayer,
                                 .transport = options.transport,
                                 .key = key};
   if (options.partition) place.other_partitions.push_back(*options.partition);

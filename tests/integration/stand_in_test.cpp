@@ -47,6 +47,7 @@ TEST(StandIn, OfARunThatFinishedAndThenWasAbortedTheLastWordCounts) {
                           .cell = "lab",
                           .run = folder.filename().string(),
                           .service = kPlantName,
+                          .role = dds::Role::kPlant,
                           .key = readKey((folder / "key").string())});
   dds::Writer<msg::SimStatus> status(plant, dds::topics::kSimStatus);
   const auto say = [&](msg::SimState state) {

@@ -193,7 +193,7 @@ std::set<std::string> strangersIn(const std::vector<Part>& parts, const Ledger& 
       // Of controllers that came later the file may have no more than their manifest, or not even that.
       const bool is_of_run = ledger.expects(service) || service == kSupervisorName || service == kRecorderName ||
                              ledger.servicesHeard() == 0 || (writer && ledger.isVouchedFor({channel.topic, *writer}));
-      if (is_of_run && mayWrite(facts->written_by, service)) continue;
+      if (is_of_run && mayWrite(facts->written_by, roleCalled(service))) continue;
       found.insert(fmt::format("{}: a writer that is none of the run's services whose topic it is{}", channel.topic,
                                service.empty() ? "" : ", and calls itself " + printable(service)));
     }

@@ -28,8 +28,10 @@ class Killer {
         request_(participant_, dds::topics::kSimRequest),
         services_(
             participant_, dds::topics::kServiceStatus,
-            [this](const msg::ServiceStatus& status, const dds::RawSample&) { onService(status); }, {},
-            admission_.filter(dds::topics::kServiceStatus)),  // a stranger could name any process
+            [this](const msg::ServiceStatus& status, const dds::RawSample& sample) {
+              if (admission_.speaksFor(sample.writer, status.name().c_str())) onService(status);
+            },
+            {}, admission_.filter(dds::topics::kServiceStatus)),  // a stranger could name any process
         status_(
             participant_, dds::topics::kSimStatus,
             [this](const msg::SimStatus& status, const dds::RawSample&) { onStatus(status); }, {},

@@ -22,6 +22,7 @@
 #include "base/error.hpp"
 #include "dds/endpoint.hpp"
 #include "loopback.hpp"
+#include "support/impostor.hpp"
 
 namespace baton::dds {
 namespace {
@@ -143,6 +144,7 @@ TEST(ParticipantTest, AMemberHasTheKeyWhicheverRunItNames) {
   const auto options = [&](const std::string& service, bool has_key, const std::string& run) {
     ParticipantOptions result = memberOptions(service, "cell");
     if (has_key) result.key = key;
+    result.role = Role::kController;
     if (!run.empty()) result.run = run;
     return result;
   };
@@ -153,6 +155,95 @@ TEST(ParticipantTest, AMemberHasTheKeyWhicheverRunItNames) {
   EXPECT_TRUE(plant.member(prefix(one)));
   EXPECT_FALSE(plant.member(prefix(other))) << "it is no stranger, since it claims nothing of ours";
   EXPECT_FALSE(plant.stranger(prefix(other)));
+}
+
+/// Members of one run, and what anybody can make of what they say.
+class ARunsMembers : public ::testing::Test {
+ protected:
+  [[nodiscard]] ParticipantOptions options(const std::string& service, Role role) const {
+    ParticipantOptions result = memberOptions(service, "cell");
+    result.key = key_;
+    result.role = role;
+    return result;
+  }
+  /// As the plant sees them once it has met them.
+  [[nodiscard]] bool isMet(const Participant& member) {
+    return signal_.waitUntil([&] { return plant_.peer(member.self().prefix).has_value(); });
+  }
+  [[nodiscard]] bool isMetAsAStranger(const test::Words& words) {
+    return signal_.waitUntil([&] { return plant_.stranger(words.prefix).has_value(); });
+  }
+  [[nodiscard]] test::Words wordsOf(const Participant& member) {
+    std::optional<test::Words> words;
+    const auto isOfMember = [&](const test::Words& one) { return one.prefix == member.self().prefix; };
+    EXPECT_TRUE(signal_.waitUntil([&] { return (words = spy_.wordsOf(isOfMember)).has_value(); }));
+    return words.value_or(test::Words{});
+  }
+
+  RunKey key_ = RunKey::fresh();
+  Signal signal_;
+  test::Impostor spy_{test::ownDomain(), [this] { signal_.notify(); }};
+  Participant plant_{options("plant", Role::kPlant), [this](const Peer&) { signal_.notify(); }};
+};
+
+TEST_F(ARunsMembers, HaveTheirRoleInTheirPrefix) {
+  const Participant controller(options("pd", Role::kController)), command(options("operator-1", Role::kOperator));
+  ASSERT_TRUE(isMet(controller) && isMet(command));
+  EXPECT_EQ(plant_.roleOf(controller.self().prefix), Role::kController);
+  EXPECT_EQ(plant_.roleOf(command.self().prefix), Role::kOperator);
+}
+
+TEST_F(ARunsMembers, HaveNoHeirsOnceTheyHaveLeft) {
+  auto controller = std::make_unique<Participant>(options("pd", Role::kController));
+  ASSERT_TRUE(isMet(*controller));
+  const test::Words words = wordsOf(*controller);
+  const std::uint64_t departures = plant_.departures();
+  controller.reset();
+  const test::Impostor heir(test::ownDomain(), words, test::testPartition("cell"));
+  ASSERT_TRUE(isMetAsAStranger(words));
+  EXPECT_EQ(plant_.departures(), departures + 1);
+  EXPECT_FALSE(plant_.roleOf(words.prefix));
+  EXPECT_FALSE(plant_.isMember(words.prefix));
+  EXPECT_FALSE(plant_.peer(words.prefix));
+}
+
+TEST_F(ARunsMembers, HaveNoneEitherWhenTheyAreDead) {
+  const Participant controller(options("pd", Role::kController));
+  ASSERT_TRUE(isMet(controller));
+  const GuidPrefix prefix = controller.self().prefix;
+  plant_.bury(prefix);
+  EXPECT_EQ(plant_.departures(), 1U);
+  EXPECT_FALSE(plant_.isMember(prefix));
+  EXPECT_FALSE(plant_.peer(prefix));
+  plant_.bury(prefix);
+  EXPECT_EQ(plant_.departures(), 1U);
+}
+
+/// A prefix that was seen can be had. What is said under it needs the key.
+TEST_F(ARunsMembers, AreNotTheOnesThatBearTheMarkAlone) {
+  const std::string place = "baton\nunit\n" + std::to_string(getpid()) + "\n";
+  for (const std::string& user_data :
+       {std::string(), std::string("something else"), place + "environment\n5\n" + std::to_string(getpid()) + "\n",
+        place + "pd\n5\n1\n" + key_.proofOf({}, place + "pd\n5\n1\n"),
+        std::string("baton\nunit\nanother-run\nplant\n5\n1\n")}) {
+    const test::Words words{key_.marked(plant_.self().prefix, Role::kEnvironment), user_data};
+    const test::Impostor impostor(test::ownDomain(), words, test::testPartition("cell"));
+    ASSERT_TRUE(isMetAsAStranger(words)) << user_data;
+    EXPECT_FALSE(plant_.isMember(words.prefix)) << user_data;
+    EXPECT_FALSE(plant_.peer(words.prefix)) << user_data;
+  }
+}
+
+/// Words are proven together with the prefix.
+TEST_F(ARunsMembers, CannotLendTheirWords) {
+  const Participant controller(options("pd", Role::kController));
+  ASSERT_TRUE(isMet(controller));
+  test::Words words = wordsOf(controller);
+  words.prefix = key_.marked(words.prefix, Role::kController);
+  const test::Impostor impostor(test::ownDomain(), words, test::testPartition("cell"));
+  ASSERT_TRUE(isMetAsAStranger(words));
+  EXPECT_FALSE(plant_.isMember(words.prefix));
+  EXPECT_TRUE(plant_.isMember(controller.self().prefix));
 }
 
 TEST(ParticipantTest, CellsDiscoverTheirOwnMembersAndWhoObservesAnyOfThem) {

@@ -332,6 +332,8 @@ INSTANTIATE_TEST_SUITE_P(
                  "list of 0"},
         BadInput{"NameOfAService", "name: force", "name: recorder", "name: recorder", "not that of another service",
                  "'recorder'"},
+        BadInput{"NameOfACommand", "name: force", "name: operator-1", "name: operator-1", "not that of another service",
+                 "'operator-1'"},
         BadInput{"NameTwice", "name: force", "name: impedance", "name: impedance\n    law: force",
                  "no other controller", "'impedance'"},
         BadInput{"BadName", "name: force", "name: for ce", "for ce", "expected a name", "'for ce'"},
