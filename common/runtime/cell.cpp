@@ -127,7 +127,7 @@ void makeKeyWhenMissing(const RunInfo& info) {
   if (fs::exists(file)) return;
   const std::string text = dds::RunKey::fresh().text() + "\n";
   const int descriptor = open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  bool is_there = descriptor >= 0 && write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  bool is_there = descriptor >= 0 && ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
   // Whole or not at all; where two begin at once, both have the first one's.
   is_there = is_there && (link(draft.c_str(), file.c_str()) == 0 || errno == EEXIST);
   const int error = errno;

@@ -11,4 +11,19 @@ nlohmann::ordered_json toJson(const msg::SwapReport& report) {
           {"blend_energy_J", report.blend_energy()}};
 }
 
+nlohmann::ordered_json toJson(const msg::SwapOutcome& swap) {
+  return {{"done", swap.done()},
+          {"outgoing", swap.outgoing().c_str()},
+          {"incoming", swap.incoming().c_str()},
+          {"request_id", swap.request_id()},
+          {"plan_id", swap.plan_id()},
+          {"decided_at_step", swap.decided_at_step()},
+          {"at_step", swap.at_step()},
+          {"hard", swap.hard()},
+          {"blend_steps", swap.blend_steps()},
+          {"raw_effort_step", swap.raw_effort_step()},
+          {"applied_effort_step", swap.applied_effort_step()},
+          {"reason", swap.reason().c_str()}};
+}
+
 }  // namespace baton

@@ -16,6 +16,7 @@
 #include "runtime/monolithic_run.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/progress_line.hpp"
+#include "runtime/swap_report.hpp"
 #include "runtime/timing.hpp"
 
 namespace baton {
@@ -122,11 +123,18 @@ nlohmann::ordered_json runInProcess(const std::string& scenario_name) {
   timing.step(run.steps());
   timing.period(timeSpread(period_ns));
   const bool finished = run.failure().empty();
+  const ExitCode ended = finished ? ExitCode::kFailed : ExitCode::kAborted;
+  const std::string reason = run.whatWentWrong();
+  auto swaps = nlohmann::ordered_json::array();
+  for (const msg::SwapOutcome& failover : run.failovers()) {
+    nlohmann::ordered_json& one = swaps.emplace_back(baton::toJson(failover));
+    one["report"] = nullptr;  // what it did to the arm is not measured
+  }
   return {{"scenario", scenario.name},
           {"scenario_file", file},
           {"state", finished ? "finished" : "aborted"},
-          {"exit_code", static_cast<int>(finished ? ExitCode::kOk : ExitCode::kAborted)},
-          {"reason", run.failure()},
+          {"exit_code", static_cast<int>(reason.empty() ? ExitCode::kOk : ended)},
+          {"reason", reason},
           {"step_ns", scenario.step_ns},
           {"steps", run.steps()},
           {"sim_time_s", sim_time_s},
@@ -137,7 +145,7 @@ nlohmann::ordered_json runInProcess(const std::string& scenario_name) {
           {"timing", baton::toJson(timing)},
           {"chain_hash", std::to_string(run.chainHash())},
           {"recording", nullptr},
-          {"swaps", nlohmann::ordered_json::array()}};
+          {"swaps", swaps}};
 }
 
 void up(const RunRequest& request, ExitCode& exit_code) {

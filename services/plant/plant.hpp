@@ -17,6 +17,7 @@
 #include "control/arm.hpp"
 #include "control/handover_meter.hpp"
 #include "failure_script.hpp"
+#include "runtime/baton_rules.hpp"
 #include "runtime/checkpoint.hpp"
 #include "runtime/loop_output.hpp"
 #include "runtime/service.hpp"
@@ -48,7 +49,6 @@ class Plant {
   void onServiceStatus(const msg::ServiceStatus& status, const dds::RawSample& sample);
   void onBadInput(std::uint64_t step, const std::string& text);
   void endAtBadInput();
-  [[nodiscard]] ReasonText objectionTo(const msg::JointCommand& message, int member, JointVector& effort) const;
 
   // The run.
   void startWhenAllAreReady();
@@ -84,7 +84,6 @@ class Plant {
   void decideEnd(std::uint64_t step);
   [[nodiscard]] msg::Decision decisionOf(msg::DecisionCause cause, int member) const;
   // plant_baton.cpp: handovers
-  [[nodiscard]] static ArbiterConfig arbiterConfig(const Scenario& scenario);
   void scheduleSwaps();
   void archiveScheduled(StateArchive& state);
   void planSwaps();

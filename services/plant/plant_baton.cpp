@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "control/law.hpp"
 #include "plant.hpp"
 
 namespace baton {
@@ -21,25 +20,6 @@ void archiveRequest(StateArchive& state, const BatonArbiter& arbiter, HandoverRe
 }
 
 }  // namespace
-
-ArbiterConfig Plant::arbiterConfig(const Scenario& scenario) {
-  const std::vector<std::string> names = controllerNames(scenario);
-  const auto index = [&](const std::string& name) {
-    return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
-  };
-  ArbiterConfig config{.members = {},
-                       .holder = index(scenario.active),
-                       .fallback = {},
-                       .margin_steps = scenario.baton.margin_steps,
-                       .blend_steps = scenario.baton.blend_steps,
-                       .max_effort_step = scenario.baton.max_effort_step,
-                       .end_step = scenario.end_step};
-  for (const ControllerConfig& controller : scenario.controllers) {
-    config.members.push_back({controller.name, findLaw(controller.law).requires_contact});
-  }
-  for (const std::string& name : scenario.baton.fallback) config.fallback.push_back(index(name));
-  return config;
-}
 
 // --- asked for
 

@@ -34,7 +34,8 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
   if (!from_holder && !from_outgoing) return;
 
   JointVector effort;
-  const ReasonText objection = objectionTo(message, member, effort);
+  const char* ails = members_[static_cast<std::size_t>(member)].ails.data();
+  const ReasonText objection = objectionTo(message, scenario_, ails, effort);
   const bool is_usable = objection.front() == '\0';
   if (!is_usable) {
     // It never reaches the integrator: the joints keep their torque for this step, and the next one is somebody else's.
@@ -57,20 +58,6 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
     memberLost(member, objection.data());
   }
   proceed();
-}
-
-ReasonText Plant::objectionTo(const msg::JointCommand& message, int member, JointVector& effort) const {
-  ReasonText objection{};
-  if (message.effort().empty()) {
-    const ReasonText& cause = members_[static_cast<std::size_t>(member)].ails;
-    write(objection, "its law has no effort to give%s%s", cause.front() != '\0' ? ": " : "", cause.data());
-  } else if (const Reading reading = fromMessage(message, scenario_.robot.size(), effort); !reading) {
-    write(objection, "it sent a joint_command whose %s %s", reading.field, reading.wrong);
-  } else if (const double largest = effort.cwiseAbs().maxCoeff(); largest > scenario_.baton.max_command) {
-    write(objection, "it commanded %.4g, above the scenario's max_command of %.4g", largest,
-          scenario_.baton.max_command);
-  }
-  return objection;
 }
 
 void Plant::onBadInput(std::uint64_t step, const std::string& text) {

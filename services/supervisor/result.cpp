@@ -28,22 +28,6 @@ Json effectOf(const msg::SwapOutcome& swap, const std::vector<msg::SwapReport>& 
   return found == reports.end() ? Json() : toJson(*found);
 }
 
-Json toJson(const msg::SwapOutcome& swap, const std::vector<msg::SwapReport>& reports) {
-  return {{"done", swap.done()},
-          {"outgoing", swap.outgoing().c_str()},
-          {"incoming", swap.incoming().c_str()},
-          {"request_id", swap.request_id()},
-          {"plan_id", swap.plan_id()},
-          {"decided_at_step", swap.decided_at_step()},
-          {"at_step", swap.at_step()},
-          {"hard", swap.hard()},
-          {"blend_steps", swap.blend_steps()},
-          {"raw_effort_step", swap.raw_effort_step()},
-          {"applied_effort_step", swap.applied_effort_step()},
-          {"reason", swap.reason().c_str()},
-          {"report", swap.done() ? effectOf(swap, reports) : Json()}};
-}
-
 }  // namespace
 
 void writeResult(const RunInfo& info, const Scenario& scenario, const RunResult& result) {
@@ -80,7 +64,11 @@ void writeResult(const RunInfo& info, const Scenario& scenario, const RunResult&
                              {"bytes", result.recorder.bytes()},          {"lost", result.recorder.lost()}};
   }
   json["swaps"] = Json::array();
-  for (const msg::SwapOutcome& swap : result.swaps) json["swaps"].push_back(toJson(swap, result.reports));
+  for (const msg::SwapOutcome& swap : result.swaps) {
+    Json one = toJson(swap);
+    one["report"] = swap.done() ? effectOf(swap, result.reports) : Json();
+    json["swaps"].push_back(std::move(one));
+  }
   json["resident_kB"] = result.resident_kB;
 
   const std::filesystem::path file = std::filesystem::path(info.folder) / "result.json";

@@ -30,7 +30,7 @@ inline std::map<std::string, std::uint64_t> expectedHashes() {
 
 /// Whether only the distributed system makes its decisions: `--in-process` refuses it.
 inline bool needsProcesses(const Scenario& scenario) {
-  return !scenario.swaps.empty() || !scenario.failures.empty() || !scenario.faults.empty();
+  return !scenario.swaps.empty() || !scenario.failures.empty() || !scenario.faults.empty() || !scenario.stops.empty();
 }
 
 /// All scenarios of deploy/scenarios whose bytes are determined: those in lockstep and with an end.

@@ -34,7 +34,7 @@ TEST(ExpectedHashes, AreThoseOfEveryScenarioInOneProcess) {
     MonolithicRun run(scenario);
     while (run.step()) {
     }
-    EXPECT_EQ(run.failure(), "");
+    EXPECT_EQ(run.whatWentWrong(), "");
     EXPECT_EQ(run.chainHash(), expected[scenario.name]);
     laws.insert(lawOf(scenario));
   }

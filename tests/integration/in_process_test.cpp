@@ -55,6 +55,29 @@ TEST(InProcess, EveryCouplingHasTheSameBytes) {
   }
 }
 
+TEST(InProcess, ACommandAboveTheLimitHasTheSameBytes) {
+  const Bench bench;
+  for (const char* fallback : {"[]", "[stiff]"}) {
+    SCOPED_TRACE(fallback);
+    expectSameBytes(bench, bench.write("too_much.yaml", "name: too_much\nrobot: " +
+                                                            (deployFolder() / "robots/rpp.yaml").string() + R"(
+step_s: 0.0005
+substeps: 2
+duration_s: 0.5
+start: {position: [0.52, 0.2, 0.1]}
+environment:
+  walls: [{point_m: [0, 0, 0.7], normal: [0, 0, 1], stiffness_N_per_m: 200}]
+trajectory:
+  waypoints: [{time_s: 0, position: [pi/6, 0.2, 0.1]}]
+controllers:
+  - {name: soft, law: impedance}
+  - {name: stiff, law: operational_inverse_dynamics}
+active: soft
+changes: [{at_s: 0.1, controller: soft, set: {kp: 1.0e+7}}]
+baton: {max_command: 1000, fallback: )" + fallback + "}\n"));
+  }
+}
+
 TEST(InProcess, SaysWhatItCannotDo) {
   const Bench bench;
   const auto expectRefusal = [&](const std::vector<std::string>& arguments, const std::string& word) {

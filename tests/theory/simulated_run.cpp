@@ -67,7 +67,7 @@ Trace simulate(const Scenario& scenario) {
   MonolithicRun run(endless);
   for (Eigen::Index k = 0; k < trace.steps(); ++k) {
     trace.chain[static_cast<std::size_t>(k)] = run.chainHash();
-    if (!run.step()) throw std::runtime_error(scenario.name + ": " + run.failure());
+    if (!run.step() || !run.failovers().empty()) throw std::runtime_error(scenario.name + ": " + run.whatWentWrong());
     fill(trace, k, run);
   }
   return trace;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.hpp"
 #include "runtime/monolithic_run.hpp"
@@ -55,7 +56,8 @@ Scenario variant(const Scenario& base, Coupling coupling, const GridPoint& point
   scenario.coupling = coupling;
   scenario.walls.front().stiffness_N_per_m = point.stiffness;
   scenario.step_ns = point.step_ns;
-  scenario.end_step = 0;  // as long as it takes
+  scenario.end_step = 0;                                                 // as long as it takes
+  scenario.baton.max_command = std::numeric_limits<double>::infinity();  // and as far as it goes
   return scenario;
 }
 
@@ -71,9 +73,10 @@ bool diesOut(const Scenario& scenario) {
   };
   const double swing = 2.0 * kPi * std::sqrt(mass.m / mass.K) / scenario.stepSeconds();
   const auto window = static_cast<int>(std::clamp(swing, 20.0, 20'000.0));
+  const auto goesOn = [&] { return run.step() && run.failovers().empty(); };
   const auto peak = [&] {
     double highest = 0.0;
-    for (int k = 0; k < window && run.step(); ++k) highest = std::max(highest, energy());
+    for (int k = 0; k < window && goesOn(); ++k) highest = std::max(highest, energy());
     return highest;
   };
   const double start = energy();
@@ -81,7 +84,7 @@ bool diesOut(const Scenario& scenario) {
   constexpr double kDecided = 4.0;                            // twice or half the amplitude
   constexpr double kGone = 1e-20, kAway = 1e10;
   double reference = 0.0;
-  while (run.failure().empty()) {
+  while (run.whatWentWrong().empty()) {
     const double now = peak();
     if (now > kAway * start) return false;
     if (now < kGone * start) return true;
@@ -125,7 +128,9 @@ Vector3 tipAtTheEnd(const Scenario& base, Coupling coupling, std::uint64_t steps
   MonolithicRun run(scenario);
   while (run.step()) {
   }
-  if (!run.failure().empty()) throw Error(ExitCode::kFailed, scenario.name + " in one process: " + run.failure());
+  if (const std::string wrong = run.whatWentWrong(); !wrong.empty()) {
+    throw Error(ExitCode::kFailed, scenario.name + " in one process: " + wrong);
+  }
   return run.state().X_WE.p;
 }
 
