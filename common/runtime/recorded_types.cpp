@@ -45,9 +45,15 @@ const schema::Type* RecordedTypes::read(const mcap::Channel& channel, const mcap
   }
   const Parsed& text = parsed(schema);
   if (!text.problem.empty()) throw UsageError(text.problem);
-  const schema::Type* type = text.types.find(schema.name);
-  if (type == nullptr) throw UsageError("expected the type " + schema.name + " in its schema's text, found it nowhere");
-  return type;
+  if (const schema::Type* type = text.types.find(schema.name)) return type;
+  const auto& problems = text.types.problems();
+  const schema::Problem* problem = text.types.problemOf(schema.name);
+  if (problem != nullptr) {
+    throw UsageError("the text of schema " + schema.name + ", definition of " + problem->definition + ", " +
+                     problem->text);
+  }
+  throw UsageError("expected the type " + schema.name + " in its schema's text, found it nowhere" +
+                   (problems.empty() ? "" : "; what cannot be read there: " + problems.front().text));
 }
 
 }  // namespace baton

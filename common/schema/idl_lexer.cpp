@@ -25,6 +25,14 @@ std::size_t lengthOf(std::string_view text, Is is) {
   return static_cast<std::size_t>(std::find_if_not(text.begin(), text.end(), is) - text.begin());
 }
 
+/// #pragma and marks of where the text came from.
+bool isHarmless(std::string_view directive) {
+  directive.remove_prefix(1);
+  directive.remove_prefix(lengthOf(directive, [](char c) { return c == ' ' || c == '\t'; }));
+  return directive.starts_with("pragma") || directive.starts_with("line") ||
+         (!directive.empty() && isDigit(directive.front()));
+}
+
 }  // namespace
 
 void failAt(std::size_t line, const std::string& expected, const std::string& found) {
@@ -33,8 +41,16 @@ void failAt(std::size_t line, const std::string& expected, const std::string& fo
 
 Token IdlLexer::take(Token::Kind kind, std::size_t length) {
   const Token token{kind, rest_.substr(0, length), line_};
+  line_ += static_cast<std::size_t>(std::ranges::count(token.text, '\n'));
   rest_.remove_prefix(length);
   return token;
+}
+
+/// Of a line for the preprocessor, with those that continue it.
+std::size_t IdlLexer::directiveLength() const {
+  std::size_t end = rest_.find('\n');
+  while (end != std::string_view::npos && rest_[end - 1] == '\\') end = rest_.find('\n', end + 1);
+  return std::min(end, rest_.size());
 }
 
 void IdlLexer::skipBlanks() {
@@ -44,15 +60,14 @@ void IdlLexer::skipBlanks() {
       length = 1;
     } else if (rest_.starts_with("//")) {
       length = std::min(rest_.find('\n'), rest_.size());
-    } else if (rest_.starts_with("/*")) {
-      const std::size_t end = rest_.find("*/", 2);
-      if (end == std::string_view::npos) failAt(line_, "the end of a comment", "the end of the text");
-      length = end + 2;
+    } else if (rest_.starts_with("/*") && rest_.find("*/", 2) != std::string_view::npos) {
+      length = rest_.find("*/", 2) + 2;
+    } else if (rest_.starts_with('#') && isHarmless(rest_)) {
+      length = directiveLength();
     } else {
       return;
     }
-    line_ += static_cast<std::size_t>(std::ranges::count(rest_.substr(0, length), '\n'));
-    rest_.remove_prefix(length);
+    (void)take(Token::Kind::kEnd, length);
   }
 }
 
@@ -73,20 +88,19 @@ Token IdlLexer::read() {
                 }));
   }
   if (first == '"' || first == '\'') return string(first);
+  if (rest_.starts_with("/*")) return take(Token::Kind::kBad, rest_.size());
   if (rest_.starts_with("::")) return take(Token::Kind::kSign, 2);
   if (std::string_view("{}[]()<>;:,=@+-*/%|&^~").find(first) != std::string_view::npos)
     return take(Token::Kind::kSign, 1);
-  if (first == '#') failAt(line_, "a text without preprocessor lines", "'#'");
-  failAt(line_, "IDL", "a character that has no meaning in it (code " + std::to_string(static_cast<int>(first)) + ")");
+  if (first == '#') return take(Token::Kind::kDirective, directiveLength());
+  return take(Token::Kind::kBad, 1);
 }
 
 /// What is escaped in it stays as it is written: only units are shown, and those have nothing to escape.
 Token IdlLexer::string(char quote) {
   std::size_t end = 1;
   while (end < rest_.size() && rest_[end] != quote && rest_[end] != '\n') end += rest_[end] == '\\' ? 2 : 1;
-  if (end >= rest_.size() || rest_[end] == '\n') {
-    failAt(line_, "a closing '" + std::string(1, quote) + "'", "the end of the line");
-  }
+  if (end >= rest_.size() || rest_[end] == '\n') return take(Token::Kind::kBad, std::min(end, rest_.size()));
   rest_.remove_prefix(1);
   const Token token = take(Token::Kind::kString, end - 1);
   rest_.remove_prefix(1);
@@ -122,8 +136,13 @@ std::string IdlLexer::scopedName(const std::string& what) {
 }
 
 void IdlLexer::fail(const std::string& expected) const {
-  fail(expected,
-       token_.kind == Token::Kind::kEnd ? "the end of the text" : "'" + std::string(token_.text.substr(0, 60)) + "'");
+  const std::string_view text = token_.text.substr(0, 60);
+  if (token_.kind == Token::Kind::kEnd) fail(expected, "the end of the text");
+  if (token_.kind != Token::Kind::kBad) fail(expected, "'" + std::string(text) + "'");
+  if (text.starts_with("/*")) fail(expected, "a comment without its end");
+  if (text.front() == '"' || text.front() == '\'') fail(expected, "a string without its end on the line");
+  const auto code = static_cast<unsigned char>(text.front());
+  fail(expected, "a character that has no meaning in IDL (code " + std::to_string(code) + ")");
 }
 
 }  // namespace baton::schema

@@ -8,7 +8,15 @@
 namespace baton::schema {
 
 struct Token {
-  enum class Kind { kWord, kNumber, kString, kSign, kEnd };
+  enum class Kind {
+    kWord,
+    kNumber,
+    kString,
+    kSign,
+    kDirective,  // a line for the preprocessor that may change what is read
+    kBad,        // no part of IDL
+    kEnd
+  };
   Kind kind = Kind::kEnd;
   std::string_view text{};  // of a string or a character without its quotes
   std::size_t line = 1;
@@ -17,8 +25,8 @@ struct Token {
 /// "line 3: expected ';', found 'struct'", thrown as IdlError.
 [[noreturn]] void failAt(std::size_t line, const std::string& expected, const std::string& found);
 
-/// Cuts a text into tokens and hands them out one by one; white space and comments are skipped. Throws IdlError for
-/// what is not expected, and for what cannot be part of IDL.
+/// Cuts a text into tokens and hands them out one by one; white space, comments, #pragma and line marks are skipped.
+/// Throws IdlError for what is not expected. A copy goes on where the original was.
 class IdlLexer {
  public:
   explicit IdlLexer(std::string_view text) : rest_(text) { advance(); }
@@ -48,6 +56,7 @@ class IdlLexer {
  private:
   void skipBlanks();
   [[nodiscard]] Token take(Token::Kind kind, std::size_t length);
+  [[nodiscard]] std::size_t directiveLength() const;
   [[nodiscard]] Token string(char quote);
   [[nodiscard]] Token read();
 

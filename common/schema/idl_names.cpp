@@ -26,24 +26,23 @@ std::pair<std::int64_t, std::int64_t> rangeOf(Kind kind) {
   }
 }
 
-/// The meaning of a name in a module ("a::b::", or "" for none) or, going outwards, in one around it; null when it has
-/// none.
+}  // namespace
+
+/// The meaning of a name in this module or, going outwards, in one around it; null when it has none.
 template <class Map>
-const typename Map::mapped_type* lookUp(const Map& map, std::string scope, const std::string& name) {
-  if (name.starts_with("::")) {
-    const auto found = map.find(name.substr(2));
-    return found == map.end() ? nullptr : &found->second;
-  }
+const typename Map::mapped_type* IdlNames::lookUp(const Map& map, const std::string& name) const {
+  const bool is_global = name.starts_with("::");
+  std::string scope = is_global ? "" : scope_;
   while (true) {
-    if (const auto found = map.find(scope + name); found != map.end()) return &found->second;
+    const std::string full = scope + (is_global ? name.substr(2) : name);
+    if (const auto found = unusable_.find(full); found != unusable_.end()) throw UnusableName(found->second);
+    if (const auto found = map.find(full); found != map.end()) return &found->second;
     if (scope.empty()) return nullptr;
     scope.resize(scope.size() - 2);  // the last "::"
     const std::size_t outer = scope.rfind("::");
     scope.resize(outer == std::string::npos ? 0 : outer + 2);
   }
 }
-
-}  // namespace
 
 std::string IdlNames::enter(const std::string& module) {
   std::string inner = claim(module) + "::";
@@ -55,8 +54,14 @@ std::string IdlNames::claim(const std::string& name) const {
   if (full.size() > kMaxNameBytes) {
     lexer_.fail("names of at most " + std::to_string(kMaxNameBytes) + " bytes", "a longer one");
   }
-  if (types_.contains(full) || constants_.contains(full)) lexer_.fail("a new name", "'" + full + "' again");
+  if (types_.contains(full) || constants_.contains(full) || unusable_.contains(full))
+    lexer_.fail("a new name", "'" + full + "' again");
   return full;
+}
+
+void IdlNames::addUnusable(const std::string& full_name, std::size_t problem) {
+  types_.erase(full_name);
+  unusable_.try_emplace(full_name, problem);
 }
 
 void IdlNames::addConstant(const std::string& full_name, Constant constant) {
@@ -67,7 +72,7 @@ void IdlNames::addConstant(const std::string& full_name, Constant constant) {
 const Type* IdlNames::type() {
   const std::size_t line = lexer_.token().line;
   const std::string name = lexer_.scopedName("a type");
-  const auto* type = lookUp(types_, scope_, name);
+  const auto* type = lookUp(types_, name);
   if (type == nullptr) failAt(line, "a type that was declared before", "'" + name + "'");
   return *type;
 }
@@ -78,7 +83,7 @@ std::int64_t IdlNames::integer(std::int64_t smallest, std::int64_t largest) {
   const auto isWithin = [&](std::int64_t value) { return value >= smallest && value <= largest; };
   if (token.kind == Token::Kind::kWord || lexer_.is("::")) {
     const std::string name = lexer_.scopedName(wanted);
-    const Constant* constant = lookUp(constants_, scope_, name);
+    const Constant* constant = lookUp(constants_, name);
     if (constant == nullptr || !isInteger(constant->type->kind) || !isWithin(constant->value.value())) {
       failAt(token.line, wanted, "'" + name + "'");
     }
@@ -119,7 +124,7 @@ std::optional<std::int64_t> IdlNames::value(const Type& type) {
   }
   const std::size_t line = lexer_.token().line;
   const std::string name = lexer_.scopedName("a value of the type");
-  const Constant* constant = lookUp(constants_, scope_, name);
+  const Constant* constant = lookUp(constants_, name);
   const bool is_same =
       constant != nullptr && constant->type->kind == type.kind && (type.kind != Kind::kEnum || constant->type == &type);
   if (!is_same) failAt(line, "a value of the type", "'" + name + "'");

@@ -71,7 +71,7 @@ class IdlParser {
   }
 
   TypeSet parse() {
-    while (lexer_.token().kind != Token::Kind::kEnd) definition(0);
+    while (!atEnd()) definition(0);
     return std::move(set_);
   }
 
@@ -173,7 +173,8 @@ class IdlParser {
   /// Up to the end of what was opened, with all that is opened within.
   void skipTo(std::string_view end, std::string_view begin) {
     for (std::size_t open = 1; open > 0; lexer_.advance()) {
-      if (lexer_.token().kind == Token::Kind::kEnd || (end == ")" && lexer_.is(";"))) {
+      const Token::Kind kind = lexer_.token().kind;
+      if (kind == Token::Kind::kEnd || kind == Token::Kind::kBad || (end == ")" && lexer_.is(";"))) {
         lexer_.fail("'" + std::string(end) + "'");
       }
       open += lexer_.is(begin) ? 1 : 0;
@@ -268,7 +269,9 @@ class IdlParser {
   }
 
   void structure() {
-    Type type{.kind = Kind::kStruct, .name = names_.claim(lexer_.name("a struct's name"))};
+    const std::string short_name = lexer_.name("a struct's name");
+    if (lexer_.is(";")) return;  // it is to come
+    Type type{.kind = Kind::kStruct, .name = names_.claim(short_name)};
     lexer_.expect("{");
     do {
       const Annotations marks = annotations();
@@ -324,7 +327,9 @@ class IdlParser {
   }
 
   void unite() {
-    Type type{.kind = Kind::kUnion, .name = names_.claim(lexer_.name("a union's name"))};
+    const std::string short_name = lexer_.name("a union's name");
+    if (lexer_.is(";")) return;
+    Type type{.kind = Kind::kUnion, .name = names_.claim(short_name)};
     lexer_.expect("switch");
     lexer_.expect("(");
     (void)annotations();
@@ -370,11 +375,79 @@ class IdlParser {
     if (depth == kMaxDepth) lexer_.fail(atMost(kMaxDepth, "modules within each other"), "more");
     const std::string outer = names_.enter(lexer_.name("a module's name"));
     lexer_.expect("{");
-    while (!lexer_.accept("}")) definition(depth + 1);
+    while (!atEnd() && !lexer_.is("}")) definition(depth + 1);
+    lexer_.expect("}");
     names_.leave(outer);
   }
 
+  /// Between definitions a line for the preprocessor changes none of them.
+  bool atEnd() {
+    while (lexer_.token().kind == Token::Kind::kDirective) lexer_.advance();
+    return lexer_.token().kind == Token::Kind::kEnd;
+  }
+
+  /// One that cannot be used is passed over, with its names.
   void definition(unsigned depth) {
+    const IdlLexer begin = lexer_;
+    const std::string scope = names_.scope();
+    std::string problem;
+    try {
+      return define(depth);
+    } catch (const UnusableName& error) {
+      giveUp(begin, scope, error.problem());
+    } catch (const IdlError& error) {
+      problem = error.what();
+    }
+    if (problem.empty()) return;
+    if (set_.problems_.size() == kMaxProblems)
+      lexer_.fail(atMost(kMaxProblems, "definitions that cannot be read"), "more");
+    const std::size_t index = set_.problems_.size();
+    set_.problems_.push_back({"", std::move(problem)});
+    set_.problems_[index].definition = giveUp(begin, scope, index);
+  }
+
+  /// Goes on behind the definition that begins there. Returns one of its names.
+  std::string giveUp(const IdlLexer& begin, const std::string& scope, std::size_t problem) {
+    lexer_ = begin;
+    names_.leave(scope);
+    nesting_ = 0;
+    std::string name;
+    for (const std::string& one : skipDefinition()) {
+      name = scope + one;
+      if (names_.size() >= kMaxDefinitions) lexer_.fail(atMost(kMaxDefinitions, "names"), "more");
+      if (name.size() <= kMaxNameBytes) names_.addUnusable(name, problem);
+    }
+    return name;
+  }
+
+  /// Up to the ';' behind it, or to the '}' around it. Returns the names it declares: those before ',', ';' or '[' in a
+  /// typedef, else the one before its body, its base, its value or its end.
+  std::vector<std::string> skipDefinition() {
+    std::vector<std::string> names;
+    bool is_typedef = false;
+    std::size_t within = 0, braces = 0;  // of any kind; of these alone
+    std::string_view word;
+    for (bool is_first = true;; is_first = false) {
+      const Token token = lexer_.token();
+      const bool ends = lexer_.is(";") && braces == 0;
+      if (token.kind == Token::Kind::kEnd || (lexer_.is("}") && braces == 0 && !is_first)) return names;
+      is_typedef = is_typedef || (within == 0 && lexer_.is("typedef"));
+      const auto isOneOf = [&](std::string_view signs) {
+        return token.kind == Token::Kind::kSign && token.text.size() == 1 && signs.find(token.text) != signs.npos;
+      };
+      const bool is_declared = is_typedef ? isOneOf(",;[") : names.empty() && (isOneOf("{:;=") || lexer_.is("switch"));
+      if (within == 0 && is_declared && !word.empty()) names.emplace_back(word);
+      if (isOneOf("{([<")) ++within;
+      if (isOneOf("})]>") && within > 0) --within;
+      braces += lexer_.is("{") ? 1 : 0;
+      braces -= lexer_.is("}") && braces > 0 ? 1 : 0;
+      word = token.kind == Token::Kind::kWord ? token.text : "";
+      lexer_.advance();
+      if (ends) return names;
+    }
+  }
+
+  void define(unsigned depth) {
     if (annotations().is_declaration) {
       (void)lexer_.name("an annotation's name");
       lexer_.expect("{");
@@ -399,7 +472,7 @@ class IdlParser {
 
   IdlLexer lexer_;
   TypeSet set_;
-  IdlNames names_{lexer_, set_.names_};
+  IdlNames names_{lexer_, set_.names_, set_.unusable_};
   std::map<std::string_view, const Type*> primitives_;
   unsigned nesting_ = 0;
 };

@@ -7,7 +7,11 @@
 /// @non_serialized, and
 /// @bit_bound of an enum, where vendors differ. All others (@final and @appendable, which are the same in plain CDR;
 /// @id, @default, @verbatim, @external, a vendor's own) are skipped, and so is the declaration of an annotation.
-/// Everything else is refused: inheritance, wide characters, long double, maps, bit masks.
+/// Everything else is refused: inheritance, wide characters, long double, maps, bit masks, expressions.
+///
+/// What is refused costs the definition it is in, and those that use it: they are no types, TypeSet::problemOf() says
+/// why, and the rest of the text is read. Forward declarations, #pragma and, between definitions, other lines for a
+/// preprocessor are skipped: the text is read as if nothing had been included, defined or left out.
 #pragma once
 
 #include <string_view>
@@ -16,7 +20,7 @@
 
 namespace baton::schema {
 
-/// Throws IdlError, with the line, for a text that is not as above or goes beyond limits.hpp.
+/// Throws IdlError, with the line, for a text that goes beyond what limits.hpp allows a whole text.
 [[nodiscard]] TypeSet parseIdl(std::string_view text);
 
 }  // namespace baton::schema

@@ -20,4 +20,13 @@ const Type* TypeSet::find(std::string_view name) const {
   return found == names_.end() ? nullptr : found->second;
 }
 
+const Problem* TypeSet::problemOf(std::string_view name) const {
+  for (;;) {
+    if (const auto found = unusable_.find(name); found != unusable_.end()) return &problems_[found->second];
+    const std::size_t outer = name.rfind("::");
+    if (outer == std::string_view::npos) return nullptr;
+    name = name.substr(0, outer);
+  }
+}
+
 }  // namespace baton::schema

@@ -72,6 +72,12 @@ struct Type {
 /// The member a union has for a discriminator; null when it has none.
 [[nodiscard]] const Member* chosenMember(const Type& type, std::int64_t discriminator);
 
+/// A definition of a text that no type could be made of.
+struct Problem {
+  std::string definition;  // its name with its modules; empty where the text gives none
+  std::string text;        // "line 3: expected ..., found ..."
+};
+
 /// All types of one text.
 class TypeSet {
  public:
@@ -83,10 +89,18 @@ class TypeSet {
   [[nodiscard]] const Type* find(std::string_view name) const;
   [[nodiscard]] const std::map<std::string, const Type*, std::less<>>& names() const { return names_; }
 
+  /// Why there is no type of that name: what is wrong with its definition, with one that it uses, or with what is
+  /// around it. Null when the text has no such definition.
+  [[nodiscard]] const Problem* problemOf(std::string_view name) const;
+  /// In the order of the text.
+  [[nodiscard]] const std::vector<Problem>& problems() const { return problems_; }
+
  private:
   friend class IdlParser;
   std::deque<Type> types_;  // stay where they are
   std::map<std::string, const Type*, std::less<>> names_;
+  std::vector<Problem> problems_;
+  std::map<std::string, std::size_t, std::less<>> unusable_;  // names; index of the problem they have
 };
 
 }  // namespace baton::schema

@@ -13,11 +13,11 @@
 namespace baton::schema {
 namespace {
 
-/// The message of the error that parsing ends with; empty when it ends well.
+/// What is wrong with the text, or with its first definition that cannot be used; empty for a good text.
 std::string errorOf(const std::string& text) {
   try {
-    (void)parseIdl(text);
-    return "";
+    const TypeSet types = parseIdl(text);
+    return types.problems().empty() ? "" : types.problems().front().text;
   } catch (const IdlError& error) {
     return error.what();
   }
@@ -223,10 +223,99 @@ TEST(IdlParser, SaysTheLineWhatWasExpectedAndWhatWasFound) {
   EXPECT_EQ(errorOf("struct S {\n  long a\n};"), "line 3: expected ';', found '}'");
   EXPECT_EQ(errorOf("struct S { T a; };"), "line 1: expected a type that was declared before, found 'T'");
   EXPECT_EQ(errorOf("struct S { long a;"), "line 1: expected a type, found the end of the text");
-  EXPECT_EQ(errorOf("#include \"a.idl\""), "line 1: expected a text without preprocessor lines, found '#'");
-  EXPECT_EQ(errorOf("\n/* never ends"), "line 2: expected the end of a comment, found the end of the text");
+  const std::string definition = "expected module, struct, union, enum, typedef or const, found ";
+  EXPECT_EQ(errorOf("\n/* never ends"), "line 2: " + definition + "a comment without its end");
+  EXPECT_EQ(errorOf("\"never ends\n"), "line 1: " + definition + "a string without its end on the line");
+  EXPECT_EQ(errorOf("\x81"), "line 1: " + definition + "a character that has no meaning in IDL (code 129)");
   EXPECT_EQ(errorOf("struct S { double a[0x10]; };"),
             "line 1: expected a whole number from 1 to 4294967295, found '0x10'");
+}
+
+// --- what cannot be used costs itself and what uses it
+
+TEST(IdlParser, ADefinitionThatCannotBeUsedCostsThoseThatUseIt) {
+  for (const char* definition : {"struct Odd { wstring a; };",
+                                 "struct Odd { map<long, string> a; };",
+                                 "struct Odd { any a; };",
+                                 "struct Odd { long double a; };",
+                                 "struct Odd { long a[2 * 3]; };",
+                                 "struct Odd { fixed<5, 2> a; };",
+                                 "struct Odd { @optional long a; };",
+                                 "@mutable struct Odd { long a; };",
+                                 "struct Odd {};",
+                                 "struct Odd : Good { long b; };",
+                                 "struct Odd { Elsewhere a; };",
+                                 "struct Odd { long a } ;",
+                                 "struct Odd {\n#ifdef X\n long a;\n#endif\n long b; };",
+                                 "struct Odd { long a; \x01 };",
+                                 "bitmask Odd { X, Y };",
+                                 "@bit_bound(8) bitset Odd { bitfield<3> a; };",
+                                 "@bit_bound(8) enum Odd { A };",
+                                 "enum Odd { A = 1 << 3 };",
+                                 "interface Odd { void call(in long a); };",
+                                 "valuetype Odd { public long a; };",
+                                 "exception Odd { long a; };",
+                                 "native Odd;",
+                                 "union Odd switch (char) { case 'a': long a; };",
+                                 "typedef map<long, long> Odd;",
+                                 "@mine typedef wstring Other, Odd[3];",
+                                 "typedef sequence<wchar, 4> Odd;",
+                                 "struct Odd { long a; }; struct Odd { long b; };"}) {
+    SCOPED_TRACE(definition);
+    const TypeSet types = parseIdl(std::string("module m { struct Good { long a; };\n") + definition +
+                                   "\nstruct Uses { Good a; sequence<Odd> b; }; struct UsesThat { Uses a[2]; };\n"
+                                   "struct Also { Good a; }; };\nstruct Behind { m::Good a; };");
+    for (const char* good : {"m::Good", "m::Also", "Behind"}) {
+      EXPECT_NE(types.find(good), nullptr) << good;
+      EXPECT_EQ(types.problemOf(good), nullptr) << good;
+    }
+    ASSERT_EQ(types.problems().size(), 1U);
+    for (const char* bad : {"m::Odd", "m::Uses", "m::UsesThat"}) {
+      EXPECT_EQ(types.find(bad), nullptr) << bad;
+      const Problem* problem = types.problemOf(bad);
+      ASSERT_NE(problem, nullptr) << bad;
+      EXPECT_EQ(problem->definition, "m::Odd") << bad;
+      EXPECT_EQ(problem->text.rfind("line ", 0), 0U) << problem->text;
+    }
+  }
+}
+
+TEST(IdlParser, AConstantThatCannotBeUsedIsNoOther) {
+  const TypeSet types = parseIdl(
+      "const long N = 2; struct T { long a; };\n"
+      "module m {\n  const long N = 1 + 1;\n  const wchar W = 'a';\n  bitmask T { X };\n"
+      "  struct S { long a[N]; }; struct U { T a; }; struct V { ::T a[::N]; };\n};");
+  EXPECT_EQ(types.find("m::S"), nullptr) << "the outer N is another one";
+  EXPECT_EQ(types.find("m::U"), nullptr) << "the outer T is another one";
+  EXPECT_NE(types.find("m::V"), nullptr);
+  ASSERT_EQ(types.problems().size(), 3U);
+  EXPECT_EQ(types.problemOf("m::S")->definition, "m::N");
+  EXPECT_EQ(types.problemOf("m::S")->text.rfind("line 3: ", 0), 0U) << types.problemOf("m::S")->text;
+  EXPECT_EQ(types.problemOf("m::W")->text, "line 4: expected a type, found 'wchar'");
+  EXPECT_EQ(types.problemOf("m::U")->definition, "m::T");
+}
+
+TEST(IdlParser, WhatIsWithinSomethingUnusableHasItsProblem) {
+  const TypeSet types = parseIdl(
+      "interface I { struct Inner { long a; }; };\n"
+      "module m { struct S { long a; }; struct T { long b;\n");  // cut off
+  EXPECT_EQ(types.problemOf("I::Inner")->definition, "I");
+  EXPECT_NE(types.find("m::S"), nullptr);
+  EXPECT_EQ(types.problemOf("m::T")->text, "line 3: expected a type, found the end of the text");
+  EXPECT_EQ(types.problemOf("Nowhere"), nullptr);
+}
+
+TEST(IdlParser, SkipsForwardDeclarationsAndLinesForAPreprocessor) {
+  const TypeSet types = parseIdl(
+      "#ifndef A_IDL\n#define A_IDL \\\n  1\n#include \"b.idl\"\n# 7 \"a.idl\"\n"
+      "module m {\n#ifdef X\nstruct S; union U;\n#endif\n"
+      "struct S {\n#pragma keylist S a\n  long a;\n#line 3\n  long b; };\n#pragma keylist S a\n};\n"
+      "union U switch (long) { case 1: long a; };\n#endif");
+  EXPECT_TRUE(types.problems().empty()) << types.problems().front().text;
+  ASSERT_NE(types.find("m::S"), nullptr);
+  EXPECT_EQ(types.find("m::S")->members.size(), 2U);
+  EXPECT_NE(types.find("U"), nullptr);
+  EXPECT_EQ(errorOf("struct S {\n#if X\n long a;\n#endif\n};"), "line 2: expected a type, found '#if X'");
 }
 
 TEST(IdlParser, RefusesWhatWouldChangeAPayload) {
@@ -235,7 +324,7 @@ TEST(IdlParser, RefusesWhatWouldChangeAPayload) {
         "@Extensibility(MUTABLE_EXTENSIBILITY) struct S { long a; };", "struct S { @optional long a; };",
         "struct S { @key @Optional long a; };", "struct S { @non_serialized long a; };", "@bit_bound(8) enum E { A };",
         "@bit_bound(16) enum E { A };", "struct A { long a; }; struct B : A { long b; };", "struct S { wstring a; };",
-        "struct S { long double a; };", "struct S { map<long, long> a; };", "bitmask B { X };", "struct S;",
+        "struct S { long double a; };", "struct S { map<long, long> a; };", "bitmask B { X };",
         "struct S { any a; };"}) {
     EXPECT_NE(errorOf(text), "") << text;
   }
@@ -308,6 +397,10 @@ TEST(IdlParser, EveryCountHasItsLimit) {
   EXPECT_NE(errorOf(numbered("const long A", " = 1;", kMaxDefinitions + 1)), "");
   EXPECT_NE(errorOf(numbered("typedef long A", ";", kMaxDefinitions + 1)), "");
   EXPECT_NE(errorOf("union U switch (long) { " + numbered("case ", ":", kMaxMembers + 1) + " long a; };"), "");
+  EXPECT_NE(errorOf(repeat("any;", 500'000 / 4)), "");
+  EXPECT_THROW((void)parseIdl(repeat("any;", kMaxProblems + 1)), IdlError);
+  EXPECT_THROW((void)parseIdl(inModules(kMaxDepth, repeat("};", kMaxProblems + 100))), IdlError);
+  EXPECT_THROW((void)parseIdl("bitmask B { X };" + numbered("typedef B A", ";", kMaxDefinitions + 1)), IdlError);
   // Types within each other, in every way there is.
   EXPECT_NE(errorOf("struct S { long a" + repeat("[1]", kMaxDepth + 1) + "; };"), "");
   EXPECT_NE(
