@@ -24,6 +24,14 @@ std::size_t characterBytes(std::string_view text) {
   return is_none ? 0 : size;
 }
 
+constexpr unsigned char kDelete = 0x7f;
+
+/// Whether it begins with U+0080 to U+009F: controls as well, which some terminals take as ESC and a letter.
+bool isC1(std::string_view text) {
+  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  return text.size() > 1 && at(0) == 0xc2 && at(1) >= 0x80 && at(1) < 0xa0;
+}
+
 void append(std::string& out, const char* format, unsigned value) {
   char text[16];
   std::snprintf(text, sizeof text, format, value);
@@ -39,16 +47,27 @@ std::string escaped(std::string_view text, bool keeps_lines) {
     const auto first = static_cast<unsigned char>(text[0]);
     if (first == '\n') {
       result += keeps_lines ? "\n" : "\\n";
-    } else if (size == 0 || isControlCharacter(text[0])) {
+    } else if (size == 0 || first < 0x20 || first == kDelete) {
       append(result, "\\x%02x", first);
       size = 1;
-    } else if (first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0) {
+    } else if (isC1(text)) {
       append(result, "\\u%04x", static_cast<unsigned char>(text[1]));
     } else {
       result += text.substr(0, size);
     }
   }
   return result;
+}
+
+std::string escapedInJson(std::string text) {
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const std::size_t size = isC1(std::string_view(text).substr(at)) ? 2 : text[at] == kDelete ? 1 : 0;
+    if (size == 0) continue;
+    std::string escape;
+    append(escape, "\\u%04x", static_cast<unsigned char>(text[at + size - 1]));
+    text.replace(at, size, escape);
+  }
+  return text;
 }
 
 }  // namespace baton

@@ -52,7 +52,7 @@ std::optional<Peer> decodePeer(const std::string& text, const GuidPrefix& prefix
   lines >> peer.started_ns >> peer.pid;
   // They are shown in logs and on terminals. Ours have no such characters.
   const std::string names = peer.cell + peer.run + peer.service;
-  if (lines.fail() || escaped(names) != names) return std::nullopt;
+  if (lines.fail() || !isPlain(names)) return std::nullopt;
   std::getline(lines, tag);  // what is left of the line
   std::getline(lines, peer.proof);
   return peer;

@@ -5,11 +5,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/text.hpp"
+
 namespace baton {
 
-/// Indented by one. Names from outside may be any bytes: what is not UTF-8 is replaced, not thrown at.
+/// Indented by one. Names from outside may be any bytes: what is not UTF-8 is replaced, not thrown at, and
+/// control characters are escaped.
 [[nodiscard]] inline std::string toText(const nlohmann::ordered_json& json) {
-  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return escapedInJson(json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 /// JSON has no number that is not finite: null stands for it.

@@ -1,19 +1,34 @@
 #include "runtime/log.hpp"
 
-#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
 #include <deque>
 #include <fstream>
+#include <memory>
+#include <mutex>
 #include <utility>
 
 #include "base/text.hpp"
 #include "dds/participant.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
+namespace {
+
+class Sink final : public spdlog::sinks::base_sink<std::mutex> {
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    spdlog::memory_buf_t line;
+    formatter_->format(message, line);
+    sayText(std::string_view(line.data(), line.size()), stderr);
+  }
+  void flush_() override { std::fflush(stderr); }
+};
+
+}  // namespace
 
 void setUpLog(const std::string& name) {
-  spdlog::set_default_logger(spdlog::stderr_logger_mt(name));
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>(name, std::make_shared<Sink>()));
   spdlog::set_pattern("%H:%M:%S.%f %l %n: %v");
   spdlog::flush_on(spdlog::level::info);
   dds::redirectDdsLog([](int level, const std::string& text) {

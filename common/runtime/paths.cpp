@@ -82,13 +82,13 @@ fs::path findNamed(const std::string& kind, const std::string& name) {
   const fs::path folder = dataFolder() / (kind + "s");
   if (fs::path known = folder / (name + ".yaml"); fs::is_regular_file(known, is_none)) return known;
   if (fs::is_directory(name, is_none)) {
-    throw UsageError(kind + " " + printable(name) + ": expected a file, found a folder");
+    throw UsageError(kind + " " + escaped(name) + ": expected a file, found a folder");
   }
   std::string names;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".yaml") names += (names.empty() ? "" : ", ") + entry.path().stem().string();
   }
-  throw UsageError(kind + " " + printable(name.substr(0, kMaxShown)) + ": expected a file or one of " + names +
+  throw UsageError(kind + " " + escaped(name.substr(0, kMaxShown)) + ": expected a file or one of " + names +
                    ", found neither");
 }
 }  // namespace
@@ -100,11 +100,11 @@ std::filesystem::path outputPath(const std::string& out) {
   std::filesystem::path path = std::filesystem::absolute(out);
   std::error_code is_none;  // also a name that no folder can have
   if (!fs::is_directory(path.parent_path(), is_none)) {
-    throw UsageError("--out " + printable(out.substr(0, kMaxShown)) + ": expected a file in an existing folder, and " +
-                     printable(path.parent_path().string().substr(0, kMaxShown)) + " is none");
+    throw UsageError("--out " + escaped(out.substr(0, kMaxShown)) + ": expected a file in an existing folder, and " +
+                     escaped(path.parent_path().string().substr(0, kMaxShown)) + " is none");
   }
   if (path.filename().string().size() > NAME_MAX) {
-    throw UsageError("--out " + printable(out.substr(0, kMaxShown)) + ": expected a name of at most " +
+    throw UsageError("--out " + escaped(out.substr(0, kMaxShown)) + ": expected a name of at most " +
                      std::to_string(NAME_MAX) + " characters");
   }
   return path;

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <string>
 
+#include "base/text.hpp"
+
 namespace baton {
 
 /// "[######..................]" for a part from 0 to 1.
@@ -31,7 +33,7 @@ class ProgressLine {
   }
   void show(const std::string& text) {
     if (!is_terminal_ || text == last_) return;
-    std::fprintf(stderr, "\r\033[K%s", text.c_str());
+    std::fprintf(stderr, "\r\033[K%s", escaped(text).c_str());
     last_ = text;
   }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -13,6 +12,7 @@
 #include "base/error.hpp"
 #include "mcap/lookup.hpp"
 #include "mcap/readable_metadata.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -218,7 +218,7 @@ FoundRecording findRecording(const RecordingWish& wish) {
 
 mcap::FileList findRecording(const RecordingWish& wish, ExitCode& exit_code) {
   FoundRecording found = findRecording(wish);
-  for (const std::string& hole : found.missing) std::fprintf(stderr, "baton: warning: %s\n", hole.c_str());
+  for (const std::string& hole : found.missing) say(stderr, "baton: warning: %s\n", hole.c_str());
   if (!found.missing.empty()) exit_code = ExitCode::kFailed;
   return std::move(found.files);
 }

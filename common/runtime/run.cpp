@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "dds/parting.hpp"
 #include "runtime/log.hpp"
+#include "runtime/say.hpp"
 #include "runtime/signals.hpp"
 
 namespace baton {
@@ -19,13 +20,13 @@ int guarded(const std::string& name, const std::function<ExitCode()>& body) {
     return static_cast<int>(body());
   } catch (const Error& error) {
     // It may name what a recording or another process calls itself.
-    std::cerr << name << ": " << escaped(error.what(), true) << '\n';
+    sayText(name + ": " + escaped(error.what(), true) + '\n', stderr);
     return static_cast<int>(error.code());
   } catch (const std::filesystem::filesystem_error& error) {
-    std::cerr << name << ": cannot use " << error.path1().string() << ": " << error.code().message() << '\n';
+    sayText(name + ": cannot use " + error.path1().string() + ": " + error.code().message() + '\n', stderr);
     return static_cast<int>(ExitCode::kUnavailable);
   } catch (const std::exception& error) {
-    std::cerr << name << ": unexpected: " << error.what() << '\n';
+    sayText(name + ": unexpected: " + error.what() + '\n', stderr);
     return static_cast<int>(ExitCode::kFailed);
   }
 }

@@ -22,9 +22,9 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::size_t kMaxShown = 60;  // bytes of a file's text in a message
 
-/// Text from outside, fit for a terminal: short, on one line, without control characters.
+/// Text from outside, fit for a terminal: short and on one line.
 std::string tidied(const std::string& text) {
-  return printable(text.substr(0, kMaxShown)) + (text.size() > kMaxShown ? "..." : "");
+  return escaped(text.substr(0, kMaxShown)) + (text.size() > kMaxShown ? "..." : "");
 }
 
 std::string quoted(const std::string& text) { return "'" + tidied(text) + "'"; }

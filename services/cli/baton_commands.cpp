@@ -15,6 +15,7 @@
 #include "run_commands.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
+#include "runtime/say.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/swap_report.hpp"
 
@@ -103,12 +104,11 @@ void print(const ControllerView& view) {
     if (!view.forecast->feasible())
       forecast += (forecast.empty() ? "no: " : "  no: ") + std::string(view.forecast->reason().c_str());
   }
-  std::printf("%-16s %-28s %-9s %10llu  %-32s %s\n", view.config.name.c_str(), view.config.law.c_str(),
-              view.state().c_str(), ull{view.status ? view.status->step() : 0}, effort.c_str(), forecast.c_str());
-  if (view.status && view.status->text().size() > 0) std::printf("%18s%s\n", "", view.status->text().c_str());
+  say("%-16s %-28s %-9s %10llu  %-32s %s\n", view.config.name.c_str(), view.config.law.c_str(), view.state().c_str(),
+      ull{view.status ? view.status->step() : 0}, effort.c_str(), forecast.c_str());
+  if (view.status && view.status->text().size() > 0) say("%18s%s\n", "", view.status->text().c_str());
   if (view.wasRefused()) {
-    std::printf("%18srefused at step %llu: %s\n", "", ull{view.member->refused_at_step()},
-                view.member->refusal().c_str());
+    say("%18srefused at step %llu: %s\n", "", ull{view.member->refused_at_step()}, view.member->refusal().c_str());
   }
 }
 
@@ -129,8 +129,8 @@ void controllers(const CellTarget& target) {
 
   Json json = Json::array();
   if (!target.json) {
-    std::printf("%-16s %-28s %-9s %10s  %-32s %s\n", "name", "law", "state", "step", "effort [N m or N]",
-                "a handover now would change it by");
+    say("%-16s %-28s %-9s %10s  %-32s %s\n", "name", "law", "state", "step", "effort [N m or N]",
+        "a handover now would change it by");
   }
   for (const ControllerConfig& config : scenario.controllers) {
     ControllerView view{config, {}, {}, {}};
@@ -145,7 +145,7 @@ void controllers(const CellTarget& target) {
       print(view);
     }
   }
-  if (target.json) std::cout << toText(json) << '\n';
+  if (target.json) sayText(toText(json) + '\n');
 }
 
 // --- swap
@@ -206,24 +206,23 @@ std::optional<double> delayOf(CellClient& client, const msg::SwapOutcome& outcom
 
 void printDone(const msg::SwapOutcome& outcome, const std::optional<msg::SwapReport>& report,
                const std::optional<double>& delay_us) {
-  std::printf("%s holds the baton since step %llu, asked at step %llu", outcome.incoming().c_str(),
-              ull{outcome.at_step()}, ull{outcome.decided_at_step()});
-  if (delay_us) std::printf(", %.3f ms later", *delay_us * 1e-3);
-  std::printf("\n%-16s %s [N m or N] in its forecast for step %llu\n", "torques apart",
-              numbersText(outcome.forecast_effort_step()).c_str(), ull{outcome.forecast_step()});
+  say("%s holds the baton since step %llu, asked at step %llu", outcome.incoming().c_str(), ull{outcome.at_step()},
+      ull{outcome.decided_at_step()});
+  if (delay_us) say(", %.3f ms later", *delay_us * 1e-3);
+  say("\n%-16s %s [N m or N] in its forecast for step %llu\n", "torques apart",
+      numbersText(outcome.forecast_effort_step()).c_str(), ull{outcome.forecast_step()});
   const std::string fades =
       outcome.blend_steps() > 0 ? "fades over " + std::to_string(outcome.blend_steps()) + " steps" : "at once";
-  std::printf("%-16s %s, %s\n", "", numbersText(outcome.raw_effort_step()).c_str(), fades.c_str());
-  std::printf("%-16s %s from one step to the next\n", "the joints felt",
-              numbersText(outcome.applied_effort_step()).c_str());
+  say("%-16s %s, %s\n", "", numbersText(outcome.raw_effort_step()).c_str(), fades.c_str());
+  say("%-16s %s from one step to the next\n", "the joints felt", numbersText(outcome.applied_effort_step()).c_str());
   if (!report) {
-    std::printf("what it does to the arm is told by `swap_report` once the blend is over\n");
+    say("what it does to the arm is told by `swap_report` once the blend is over\n");
     return;
   }
-  std::printf("%-16s %s [N m/s or N/s], %llu times above the limit, in %llu steps\n", "fastest change",
-              numbersText(report->max_effort_rate()).c_str(), ull{report->rate_limit_hits()}, ull{report->steps()});
-  std::printf("%-16s moved by at most %.4g N\n%-16s %.4g J from the blend\n", "contact force",
-              report->peak_force_deviation(), "energy", report->blend_energy());
+  say("%-16s %s [N m/s or N/s], %llu times above the limit, in %llu steps\n", "fastest change",
+      numbersText(report->max_effort_rate()).c_str(), ull{report->rate_limit_hits()}, ull{report->steps()});
+  say("%-16s moved by at most %.4g N\n%-16s %.4g J from the blend\n", "contact force", report->peak_force_deviation(),
+      "energy", report->blend_energy());
 }
 
 Json toJson(const msg::SwapOutcome& outcome, const std::optional<msg::SwapReport>& report,
@@ -279,17 +278,16 @@ void swap(const CellTarget& target, const SwapWish& wish, ExitCode& exit_code) {
     delay_us = delayOf(client, *outcome);
   }
   if (target.json) {
-    std::cout << toText(toJson(*outcome, report, delay_us)) << '\n';
+    sayText(toText(toJson(*outcome, report, delay_us)) + '\n');
   } else if (outcome->done()) {
     printDone(*outcome, report, delay_us);
   } else if (outcome->feasible()) {
-    std::printf(
-        "nothing speaks against it: at step %llu, with the torques of step %llu, a handover from %s to %s\n"
+    say("nothing speaks against it: at step %llu, with the torques of step %llu, a handover from %s to %s\n"
         "would change them by %s [N m or N]\n",
         ull{outcome->at_step()}, ull{outcome->forecast_step()}, outcome->outgoing().c_str(),
         outcome->incoming().c_str(), numbersText(outcome->forecast_effort_step()).c_str());
   } else {
-    std::printf("%s: %s\n", outcome->dry_run() ? "it would be refused" : "refused", outcome->reason().c_str());
+    say("%s: %s\n", outcome->dry_run() ? "it would be refused" : "refused", outcome->reason().c_str());
   }
 }
 

@@ -1,7 +1,6 @@
 #include "branch_command.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -19,6 +18,7 @@
 #include "runtime/paths.hpp"
 #include "runtime/recorded_messages.hpp"
 #include "runtime/recording_files.hpp"
+#include "runtime/say.hpp"
 #include "runtime/scenario_edit.hpp"
 #include "runtime/service_options.hpp"
 
@@ -79,9 +79,9 @@ nlohmann::ordered_json runFrom(const CheckpointSet& set, const fs::path& folder,
   }
   request.scenario = (folder / "scenario.yaml").string();
   if (loadScenario(request.scenario).end_step == 0) {
-    std::fprintf(stderr,
-                 "baton: the scenario has no end, so the branch goes on until Ctrl-C or `baton down`; "
-                 "--set duration_s=S gives it one\n");
+    say(stderr,
+        "baton: the scenario has no end, so the branch goes on until Ctrl-C or `baton down`; "
+        "--set duration_s=S gives it one\n");
   }
   RunSession session(request, true);
   exit_code = runToTheEnd(session);
@@ -101,8 +101,8 @@ CheckpointSet checkpointAt(const Fork& fork, const fs::path& folder, const RunRe
       is_ours ? newestCheckpoint(original.file, original.checkpoints_from_ns, step, services) : CheckpointSet{};
   if (newest.step == step) return newest;
 
-  std::fprintf(stderr, "repeating steps %llu to %llu\n", static_cast<unsigned long long>(newest.step),
-               static_cast<unsigned long long>(step));
+  say(stderr, "repeating steps %llu to %llu\n", static_cast<unsigned long long>(newest.step),
+      static_cast<unsigned long long>(step));
   RunRequest lead_in = request;
   lead_in.out = (folder / "lead_in.mcap").string();
   lead_in.overwrite = true;
@@ -181,7 +181,7 @@ void branch(const BranchRequest& request, ExitCode& exit_code) {
   result["branch_of"] = fs::absolute(original.file.first()).string();
   result["branch_step"] = step;
   if (request.json) {
-    std::cout << toText(result) << '\n';
+    sayText(toText(result) + '\n');
   } else {
     printResult(result);
   }

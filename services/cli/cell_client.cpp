@@ -2,12 +2,12 @@
 
 #include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <random>
 
 #include "runtime/paths.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 
@@ -19,7 +19,7 @@ CellClient::CellClient(const RunInfo& info)
                      changed_.notify_all();
                    }),
       admission_(participant_, false,
-                 [](const std::string& text) { std::fprintf(stderr, "baton: warning: %s\n", text.c_str()); }) {}
+                 [](const std::string& text) { say(stderr, "baton: warning: %s\n", text.c_str()); }) {}
 
 namespace {
 /// How the cell's last run ended, as a sentence; empty when there was none.

@@ -1,13 +1,13 @@
 #include "controller_command.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <vector>
 
 #include "cell_target.hpp"
 #include "runtime/json.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -61,22 +61,21 @@ void launch(const CellTarget& target, const LaunchWish& wish, msg::LaunchAction 
   const bool is_to_come = starts && reply->accepted() && !is_done && simStatus(client).state() == msg::SIM_STATE_PAUSED;
   exit_code = is_done ? ExitCode::kOk : is_to_come ? ExitCode::kUnavailable : ExitCode::kFailed;
   if (target.json) {
-    std::cout << toText(Json{{"accepted", reply->accepted()},
-                             {"done", is_done},
-                             {"pid", reply->pid()},
-                             {"reason", reply->reason().c_str()}})
-              << '\n';
+    sayText(toText(Json{{"accepted", reply->accepted()},
+                        {"done", is_done},
+                        {"pid", reply->pid()},
+                        {"reason", reply->reason().c_str()}}) +
+            '\n');
   } else if (!reply->accepted()) {
-    std::printf("refused: %s\n", reply->reason().c_str());
+    say("refused: %s\n", reply->reason().c_str());
   } else if (is_to_come) {
-    std::printf("%s, process %d, joins when the run goes on: it is paused\n", wish.name.c_str(),
-                static_cast<int>(reply->pid()));
+    say("%s, process %d, joins when the run goes on: it is paused\n", wish.name.c_str(),
+        static_cast<int>(reply->pid()));
   } else if (!is_done) {
-    std::printf("%s, process %d, %s; see `baton logs %s`\n", wish.name.c_str(), static_cast<int>(reply->pid()),
-                starts ? "does not stand by yet" : "does not end; stop it again to kill it", wish.name.c_str());
+    say("%s, process %d, %s; see `baton logs %s`\n", wish.name.c_str(), static_cast<int>(reply->pid()),
+        starts ? "does not stand by yet" : "does not end; stop it again to kill it", wish.name.c_str());
   } else {
-    std::printf("%s %s, process %d\n", wish.name.c_str(), starts ? "stands by" : "has ended",
-                static_cast<int>(reply->pid()));
+    say("%s %s, process %d\n", wish.name.c_str(), starts ? "stands by" : "has ended", static_cast<int>(reply->pid()));
   }
 }
 

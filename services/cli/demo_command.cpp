@@ -16,6 +16,7 @@
 #include "runtime/log.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/recorded_messages.hpp"
+#include "runtime/say.hpp"
 #include "runtime/scenario.hpp"
 
 namespace baton {
@@ -45,7 +46,7 @@ double impedanceForce(const Scenario& scenario, const ControllerConfig& controll
 void compareForces(const Scenario& scenario, const nlohmann::ordered_json& swaps, const std::string& recording) {
   const std::map<std::uint64_t, double> force_N = contactForce(recording);
   const auto at = [&](std::uint64_t step) { return force_N.contains(step) ? force_N.at(step) : std::nan(""); };
-  std::printf("contact     [N, upwards]            measured     predicted\n");
+  say("contact     [N, upwards]            measured     predicted\n");
   std::vector<nlohmann::ordered_json> done;
   for (const auto& swap : swaps) {
     if (swap.at("done").get<bool>()) done.push_back(swap);
@@ -56,9 +57,9 @@ void compareForces(const Scenario& scenario, const nlohmann::ordered_json& swaps
     const std::uint64_t until = is_last ? scenario.end_step : done[i + 1].at("at_step").get<std::uint64_t>() - 1;
     const double predicted =
         controller.law == "force_pi" ? scenario.trajectory.h_d[2] : impedanceForce(scenario, controller);
-    std::printf("  %-9s at %.1f s, at rest   %10.6f    %10.6f  (%s)\n", controller.name.c_str(),
-                static_cast<double>(until) * scenario.stepSeconds(), at(until), predicted,
-                controller.law == "force_pi" ? "f_d" : "Kp Ke / (Kp + Ke) (z_d - z_r)");
+    say("  %-9s at %.1f s, at rest   %10.6f    %10.6f  (%s)\n", controller.name.c_str(),
+        static_cast<double>(until) * scenario.stepSeconds(), at(until), predicted,
+        controller.law == "force_pi" ? "f_d" : "Kp Ke / (Kp + Ke) (z_d - z_r)");
   }
 }
 
@@ -81,8 +82,7 @@ ExitCode runProgram(const std::filesystem::path& program, std::vector<std::strin
 
 ExitCode demo(const RunRequest& request) {
   const Scenario scenario = loadScenario(findScenario(request.scenario).string());
-  std::printf(
-      "%s: %s\n%zu controllers, a wall, a trajectory, a plant and a recorder, each a process of its own, talk over "
+  say("%s: %s\n%zu controllers, a wall, a trajectory, a plant and a recorder, each a process of its own, talk over "
       "DDS.\n\n",
       scenario.name.c_str(), scenario.description.c_str(), scenario.controllers.size());
   std::fflush(stdout);
@@ -91,25 +91,23 @@ ExitCode demo(const RunRequest& request) {
   const nlohmann::ordered_json result = session.result();
   printResult(result);
   if (run_code != ExitCode::kOk) {
-    std::fprintf(stderr, "baton: the end of %s:\n%s", session.logFile().c_str(),
-                 lastLines(session.logFile(), 8).c_str());
+    say(stderr, "baton: the end of %s:\n%s", session.logFile().c_str(), lastLines(session.logFile(), 8).c_str());
     return run_code;
   }
   const std::string recording = session.info().recording;
   compareForces(scenario, result.at("swaps"), recording);
 
-  std::printf("\nreplaying the first 2 seconds of the recording, as its own writers on DDS\n");
+  say("\nreplaying the first 2 seconds of the recording, as its own writers on DDS\n");
   const ExitCode replay_code = runProgram(siblingProgram("baton-replayer"),
                                           {recording, "--to", "2", "--domain", std::to_string(request.domain)});
   if (session.wasInterrupted()) return ExitCode::kInterrupted;
   const char* baton = isInstalled() ? "baton" : "deploy/baton";
-  std::fputs(fmt::format("\nnext, try\n"
-                         "  {0} bag info {1}\n"
-                         "  {0} up lab      then: {0} controllers, {0} swap tracking, {0} down\n"
-                         "  {0} model --robot rpp --q pi/3 0.1 0.1\n",
-                         baton, recording)
-                 .c_str(),
-             stdout);
+  sayText(
+      fmt::format("\nnext, try\n"
+                  "  {0} bag info {1}\n"
+                  "  {0} up lab      then: {0} controllers, {0} swap tracking, {0} down\n"
+                  "  {0} model --robot rpp --q pi/3 0.1 0.1\n",
+                  baton, recording));
   return replay_code;
 }
 

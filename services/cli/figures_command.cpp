@@ -1,12 +1,8 @@
 #include "figures_command.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <set>
@@ -22,6 +18,8 @@
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/progress_line.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -89,12 +87,14 @@ std::vector<fs::path> scenariosOf(const std::vector<Figure>& figures) {
   return files;
 }
 
+ProgressLine& progressLine() {
+  static ProgressLine line;
+  return line;
+}
+
 /// What is being drawn, and how much of it is done.
 void showProgress(const Figure& figure, double part) {
-  static const bool is_terminal = isatty(STDERR_FILENO) != 0;
-  if (!is_terminal) return;
-  std::fprintf(stderr, "\r\033[Kdrawing figure %s", figure.number.c_str());
-  if (part > 0.0) std::fprintf(stderr, ": %.0f %%", 100.0 * part);
+  progressLine().show("drawing figure " + figure.number + (part > 0.0 ? fmt::format(": {:.0f} %", 100.0 * part) : ""));
 }
 
 /// Fills in what is seen of a figure.
@@ -177,14 +177,14 @@ Json toJson(const FigureResult& result) {
 
 void print(const FigureResult& result) {
   const std::string claim = result.figure.is_study ? "" : std::string("claim ") + toString(result.verdict());
-  std::printf("%-25s %-58s %-20s %s\n", result.figure.number.c_str(), result.figure.title.c_str(), claim.c_str(),
-              !result.failure.empty() ? "NOT COMPLETED"
-              : result.agrees()       ? "agrees with theory"
-                                      : "DIFFERS FROM THEORY");
-  if (!result.failure.empty()) std::printf("  %s\n", result.failure.c_str());
+  say("%-25s %-58s %-20s %s\n", result.figure.number.c_str(), result.figure.title.c_str(), claim.c_str(),
+      !result.failure.empty() ? "NOT COMPLETED"
+      : result.agrees()       ? "agrees with theory"
+                              : "DIFFERS FROM THEORY");
+  if (!result.failure.empty()) say("  %s\n", result.failure.c_str());
   for (const Check& check : result.checks) {
-    std::printf("  %s %-62s predicted %14.8g  measured %14.8g %s\n", check.passes() ? " " : "!", check.what.c_str(),
-                check.predicted, check.measured, check.unit.c_str());
+    say("  %s %-62s predicted %14.8g  measured %14.8g %s\n", check.passes() ? " " : "!", check.what.c_str(),
+        check.predicted, check.measured, check.unit.c_str());
   }
 }
 
@@ -208,7 +208,7 @@ ExitCode figures(FiguresRequest request) {
     showProgress(figure, 0.0);
     results.push_back(resultOf(figure, runs, out));
   }
-  if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K");
+  progressLine().clear();
   facts.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const fs::path page = out / (request.only.empty() ? "index.html" : "partial.html");
   writePage(page, results, list.errata, facts);
@@ -223,16 +223,15 @@ ExitCode figures(FiguresRequest request) {
   }
   const auto agreeing = std::count_if(results.begin(), results.end(), [](const auto& one) { return one.agrees(); });
   if (request.json) {
-    std::cout << toText(Json{{"page", page.string()},
-                             {"elapsed_s", facts.elapsed_s},
-                             {"runs", facts.runs},
-                             {"reused", facts.reused},
-                             {"figures", json}})
-              << '\n';
+    sayText(toText(Json{{"page", page.string()},
+                        {"elapsed_s", facts.elapsed_s},
+                        {"runs", facts.runs},
+                        {"reused", facts.reused},
+                        {"figures", json}}) +
+            '\n');
   } else {
-    std::printf("%zu of %zu figures agree with theory; %zu runs, %zu reused, %.0f s\n%s\n",
-                static_cast<std::size_t>(agreeing), results.size(), facts.runs, facts.reused, facts.elapsed_s,
-                page.c_str());
+    say("%zu of %zu figures agree with theory; %zu runs, %zu reused, %.0f s\n%s\n", static_cast<std::size_t>(agreeing),
+        results.size(), facts.runs, facts.reused, facts.elapsed_s, page.c_str());
   }
   return static_cast<std::size_t>(agreeing) == results.size() ? ExitCode::kOk : ExitCode::kFailed;
 }

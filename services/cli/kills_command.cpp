@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -16,6 +15,7 @@
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/progress_line.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -127,25 +127,24 @@ void print(const std::vector<Trial>& trials, const KillsRequest& request, double
     nlohmann::ordered_json json{{"seed", request.seed}, {"runs", trials.size()}, {"trials", nlohmann::json::array()}};
     json["failed"] = std::count_if(trials.begin(), trials.end(), [](const Trial& trial) { return !trial.isGood(); });
     for (const Trial& trial : trials) json["trials"].push_back(toJson(trial));
-    std::puts(toText(json).c_str());
+    sayText(toText(json) + '\n');
     return;
   }
-  std::printf("%-12s %-10s %5s  %13s  %14s  %20s\n", "victim", "way", "runs", "ended as told", "largest torque",
-              "repeated bit for bit");
+  say("%-12s %-10s %5s  %13s  %14s  %20s\n", "victim", "way", "runs", "ended as told", "largest torque",
+      "repeated bit for bit");
   for (const KillRow& row : tableOf(trials)) {
-    std::printf("%-12s %-10s %5zu  %13zu  %12.0f %%  %20zu\n", toString(row.of.victim), toString(row.of.way), row.runs,
-                row.as_told, 100.0 * row.largest_torque, row.repeated);
+    say("%-12s %-10s %5zu  %13zu  %12.0f %%  %20zu\n", toString(row.of.victim), toString(row.of.way), row.runs,
+        row.as_told, 100.0 * row.largest_torque, row.repeated);
   }
-  std::printf("torques in parts of the limit; %zu runs and re-runs in %.0f s, seed %llu\n", trials.size(), elapsed_s,
-              static_cast<unsigned long long>(request.seed));
+  say("torques in parts of the limit; %zu runs and re-runs in %.0f s, seed %llu\n", trials.size(), elapsed_s,
+      static_cast<unsigned long long>(request.seed));
   for (const Trial& trial : trials) {
     if (trial.isGood()) continue;
-    std::printf("\nrun %llu: %s, the %s, %s at step %llu\n  %s\n  %s\n  %s\n",
-                static_cast<unsigned long long>(trial.kill.number), trial.run.service.c_str(),
-                toString(trial.kill.of.victim), toString(trial.kill.of.way),
-                static_cast<unsigned long long>(trial.run.step),
-                trial.objection.empty() ? "ended as told" : trial.objection.c_str(), trial.repetition.c_str(),
-                trial.recording.c_str());
+    say("\nrun %llu: %s, the %s, %s at step %llu\n  %s\n  %s\n  %s\n",
+        static_cast<unsigned long long>(trial.kill.number), trial.run.service.c_str(), toString(trial.kill.of.victim),
+        toString(trial.kill.of.way), static_cast<unsigned long long>(trial.run.step),
+        trial.objection.empty() ? "ended as told" : trial.objection.c_str(), trial.repetition.c_str(),
+        trial.recording.c_str());
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "control/law.hpp"
 #include "runtime/json.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -47,11 +48,11 @@ std::string defaultText(const ParameterSpec& spec) {
 }
 
 void print(const LawInfo& law, bool with_parameters) {
-  std::printf("%-30s %s%s\n", law.name.c_str(), law.summary.c_str(), law.requires_contact ? " (in contact only)" : "");
+  say("%-30s %s%s\n", law.name.c_str(), law.summary.c_str(), law.requires_contact ? " (in contact only)" : "");
   if (!with_parameters) return;
   for (const ParameterSpec& spec : law.parameters) {
-    std::printf("  %-26s %-16s %-22s %s%s%s\n", spec.name.c_str(), nameOf(spec.size), defaultText(spec).c_str(),
-                spec.doc.c_str(), spec.unit.empty() ? "" : ", ", spec.unit.c_str());
+    say("  %-26s %-16s %-22s %s%s%s\n", spec.name.c_str(), nameOf(spec.size), defaultText(spec).c_str(),
+        spec.doc.c_str(), spec.unit.empty() ? "" : ", ", spec.unit.c_str());
   }
 }
 
@@ -80,7 +81,7 @@ void addLawsCommand(CLI::App& app) {
                       {"requires_contact", law.requires_contact},
                       {"parameters", parameters}});
     }
-    std::cout << toText(list) << '\n';
+    sayText(toText(list) + '\n');
   });
 }
 

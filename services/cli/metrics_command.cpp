@@ -1,12 +1,12 @@
 #include "metrics_command.hpp"
 
-#include <cstdio>
 #include <memory>
 #include <string>
 
 #include "report/metrics.hpp"
 #include "runtime/json.hpp"
 #include "runtime/recording_files.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 
@@ -23,10 +23,9 @@ void addMetricsCommand(CLI::App& app, ExitCode& exit_code) {
   command->callback([=, &exit_code] {
     const mcap::FileList files = findRecording(*wish, exit_code);
     const Trace trace = readTrace(files);
-    if (!trace.is_complete)
-      std::fprintf(stderr, "baton: warning: %s is not certified complete\n", files.string().c_str());
+    if (!trace.is_complete) say(stderr, "baton: warning: %s is not certified complete\n", files.string().c_str());
     const Metrics metrics = metricsOf(trace);
-    std::puts((*json ? toText(toJson(metrics)) : toText(metrics)).c_str());
+    sayText((*json ? toText(toJson(metrics)) : toText(metrics)) + '\n');
   });
 }
 

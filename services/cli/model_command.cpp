@@ -2,16 +2,17 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/text.hpp"
 #include "robot/dynamics.hpp"
 #include "robot/kinematics.hpp"
 #include "runtime/paths.hpp"
+#include "runtime/say.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/yaml.hpp"
 
@@ -56,7 +57,7 @@ ModelReport evaluate(const ModelRequest& request) {
   ModelReport report;
   std::vector<std::string> warnings;
   report.robot = loadRobot(findRobot(request.robot), &warnings);
-  for (const std::string& warning : warnings) std::fprintf(stderr, "baton: warning: %s\n", warning.c_str());
+  for (const std::string& warning : warnings) say(stderr, "baton: warning: %s\n", warning.c_str());
   const RobotModel& robot = report.robot;
   report.q = parseNumbers("--q", request.q, robot.size(), "joint");
   report.qd = parseNumbers("--qd", request.qd, robot.size(), "joint");
@@ -87,7 +88,7 @@ void print(const std::string& name, const Eigen::MatrixBase<Derived>& matrix, co
       line += fmt::format(" {:>14.8g}", matrix(i, j) == 0.0 ? 0.0 : matrix(i, j));  // no -0
     }
     if (i == 0 && !unit.empty()) line += "  " + unit;
-    std::puts(line.c_str());
+    sayText(line + '\n');
   }
 }
 
@@ -97,12 +98,12 @@ void printText(const ModelReport& report) {
     joints += fmt::format("{}{} ({})", joints.empty() ? "" : ", ", joint.name,
                           joint.kind == JointKind::kRevolute ? "rad, N m" : "m, N");
   }
-  std::printf("%s: %s\n", report.robot.name.c_str(), joints.c_str());
+  say("%s: %s\n", report.robot.name.c_str(), joints.c_str());
   print("q", report.q.transpose());
   print("qd", report.qd.transpose(), "per s");
   print("qdd", report.qdd.transpose(), "per s^2");
   print("wrench h_e", report.h_e.transpose(), "N; N m");
-  std::puts("\ntip");
+  say("\ntip\n");
   print("position p", report.kinematics.X_WE.p.transpose(), "m");
   print("rotation R", report.kinematics.X_WE.R);
   print("ZYZ angles", report.zyz.transpose(), "rad");
@@ -110,9 +111,9 @@ void printText(const ModelReport& report) {
   if (report.J_A) {
     print("analytical Jacobian J_A", *report.J_A);
   } else {
-    std::puts("analytical Jacobian J_A  does not exist here: the ZYZ angles are singular at sin(theta) = 0");
+    say("analytical Jacobian J_A  does not exist here: the ZYZ angles are singular at sin(theta) = 0\n");
   }
-  std::puts("\nB qdd + C qd + g + friction + J^T h_e = tau");
+  say("\nB qdd + C qd + g + friction + J^T h_e = tau\n");
   print("B", report.terms.B);
   print("C", report.terms.C);
   print("g", report.terms.g.transpose());
@@ -191,7 +192,7 @@ void addModelCommand(CLI::App& app, ExitCode& /*exit_code*/) {
   command->callback([request] {
     const ModelReport report = evaluate(*request);
     if (request->json) {
-      std::puts(toJson(report).dump().c_str());
+      sayText(escapedInJson(toJson(report).dump()) + '\n');
     } else {
       printText(report);
     }

@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "run_commands.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
+#include "runtime/say.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/service_options.hpp"
 #include "runtime/timing.hpp"
@@ -75,25 +75,25 @@ void status(const CellTarget& target) {
       json["services"].push_back(
           {{"name", name}, {"role", nullptr}, {"state", "silent"}, {"pid", nullptr}, {"text", kSilent}});
     }
-    std::cout << toText(json) << '\n';
+    sayText(toText(json) + '\n');
     return;
   }
-  std::printf("run %s of %s in cell %s, domain %d\n", client.info().run.c_str(), client.info().scenario.c_str(),
-              client.info().cell.c_str(), client.info().domain);
-  std::printf("%s at step %llu", toString(sim.state()), ull{sim.step()});
-  if (sim.end_step() > 0) std::printf(" of %llu", ull{sim.end_step()});
-  std::printf(", %.4f s of motion in %.2f s, %s%s, %s holds the baton\n", time_s, sim.elapsed_s(),
-              sim.mode() == msg::SIM_MODE_REALTIME ? "realtime" : "lockstep",
-              sim.rate() > 0.0 ? fmt::format(" at rate {:g}", sim.rate()).c_str() : " as fast as possible",
-              sim.holder().size() > 0 ? sim.holder().c_str() : "the brake");
-  if (const std::string text = timingText(timing); !text.empty()) std::printf("%s\n", text.c_str());
-  if (sim.waiting_for().size() > 0) std::printf("waits for %s\n", sim.waiting_for().c_str());
+  say("run %s of %s in cell %s, domain %d\n", client.info().run.c_str(), client.info().scenario.c_str(),
+      client.info().cell.c_str(), client.info().domain);
+  say("%s at step %llu", toString(sim.state()), ull{sim.step()});
+  if (sim.end_step() > 0) say(" of %llu", ull{sim.end_step()});
+  say(", %.4f s of motion in %.2f s, %s%s, %s holds the baton\n", time_s, sim.elapsed_s(),
+      sim.mode() == msg::SIM_MODE_REALTIME ? "realtime" : "lockstep",
+      sim.rate() > 0.0 ? fmt::format(" at rate {:g}", sim.rate()).c_str() : " as fast as possible",
+      sim.holder().size() > 0 ? sim.holder().c_str() : "the brake");
+  if (const std::string text = timingText(timing); !text.empty()) say("%s\n", text.c_str());
+  if (sim.waiting_for().size() > 0) say("waits for %s\n", sim.waiting_for().c_str());
   for (const auto& [name, service] : services) {
-    std::printf("  %-16s %-12s %-9s pid %-8d %s\n", name.c_str(), service.role().c_str(), toString(service.state()),
-                static_cast<int>(service.pid()), service.text().c_str());
+    say("  %-16s %-12s %-9s pid %-8d %s\n", name.c_str(), service.role().c_str(), toString(service.state()),
+        static_cast<int>(service.pid()), service.text().c_str());
   }
   for (const std::string& name : expected) {
-    if (!services.contains(name)) std::printf("  %-16s %-12s %-9s %s\n", name.c_str(), "", "silent", kSilent);
+    if (!services.contains(name)) say("  %-16s %-12s %-9s %s\n", name.c_str(), "", "silent", kSilent);
   }
 }
 
@@ -130,17 +130,17 @@ void sim(const CellTarget& target, const msg::SimRequest& what, const std::optio
     reply->step(stepReached(client, reply->step() + std::min(what.steps(), most)));
   }
   if (target.json) {
-    std::cout << toText(Json{
-                     {"accepted", reply->accepted()}, {"step", reply->step()}, {"reason", reply->reason().c_str()}})
-              << '\n';
+    sayText(
+        toText(Json{{"accepted", reply->accepted()}, {"step", reply->step()}, {"reason", reply->reason().c_str()}}) +
+        '\n');
   } else if (reply->accepted()) {
     if (request.at_step() > 0) {
-      std::printf("asked at step %llu, for step %llu\n", ull{reply->step()}, ull{request.at_step()});
+      say("asked at step %llu, for step %llu\n", ull{reply->step()}, ull{request.at_step()});
     } else {
-      std::printf("done at step %llu\n", ull{reply->step()});
+      say("done at step %llu\n", ull{reply->step()});
     }
   } else {
-    std::printf("refused at step %llu: %s\n", ull{reply->step()}, reply->reason().c_str());
+    say("refused at step %llu: %s\n", ull{reply->step()}, reply->reason().c_str());
   }
 }
 

@@ -14,6 +14,7 @@
 #include "parameter_setting.hpp"
 #include "run_commands.hpp"
 #include "runtime/json.hpp"
+#include "runtime/say.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/service_options.hpp"
 #include "runtime/yaml.hpp"
@@ -66,10 +67,10 @@ Json toJson(const msg::Parameter& parameter) {
 }
 
 void print(const msg::ParameterStatus& controller) {
-  std::printf("%s, law %s\n", controller.name().c_str(), controller.law().c_str());
+  say("%s, law %s\n", controller.name().c_str(), controller.law().c_str());
   for (const msg::Parameter& one : controller.parameters()) {
-    std::printf("  %-18s %-30s %-22s %-24s %s\n", one.name().c_str(), valueText(one).c_str(), one.unit().c_str(),
-                rangeText(one).c_str(), one.doc().c_str());
+    say("  %-18s %-30s %-22s %-24s %s\n", one.name().c_str(), valueText(one).c_str(), one.unit().c_str(),
+        rangeText(one).c_str(), one.doc().c_str());
   }
 }
 
@@ -92,7 +93,7 @@ void list(const ParamArguments& request) {
     const auto found = all.find(name);
     if (found == all.end()) {
       if (!request.controller.empty()) throw UnavailableError(name + " says nothing; see `baton controllers`");
-      if (!request.target.json) std::printf("%s says nothing\n", name.c_str());
+      if (!request.target.json) say("%s says nothing\n", name.c_str());
       continue;
     }
     if (!request.target.json) {
@@ -103,7 +104,7 @@ void list(const ParamArguments& request) {
     for (const msg::Parameter& one : found->second.parameters()) parameters.push_back(toJson(one));
     json.push_back({{"name", name}, {"law", found->second.law().c_str()}, {"parameters", parameters}});
   }
-  if (request.target.json) std::cout << toText(json) << '\n';
+  if (request.target.json) sayText(toText(json) + '\n');
 }
 
 void get(const ParamArguments& request) {
@@ -124,10 +125,10 @@ void get(const ParamArguments& request) {
       json[name] = toJson(*parameter).at("value");
     } else {
       const std::string label = request.names.size() > 1 ? name + " " : "";
-      std::printf("%s%s\n", label.c_str(), valueText(*parameter).c_str());
+      say("%s%s\n", label.c_str(), valueText(*parameter).c_str());
     }
   }
-  if (request.target.json) std::cout << toText(json) << '\n';
+  if (request.target.json) sayText(toText(json) + '\n');
 }
 
 void set(const ParamArguments& request, ExitCode& exit_code) {
@@ -150,17 +151,17 @@ void set(const ParamArguments& request, ExitCode& exit_code) {
   if (!reply) throw UnavailableError(controller + " did not answer; see `baton controllers`");
   exit_code = reply->accepted() ? ExitCode::kOk : ExitCode::kFailed;
   if (request.target.json) {
-    std::cout << toText(Json{{"accepted", reply->accepted()},
-                             {"controller", controller},
-                             {"at_step", reply->at_step()},
-                             {"reason", reply->reason().c_str()}})
-              << '\n';
+    sayText(toText(Json{{"accepted", reply->accepted()},
+                        {"controller", controller},
+                        {"at_step", reply->at_step()},
+                        {"reason", reply->reason().c_str()}}) +
+            '\n');
   } else if (reply->accepted()) {
-    std::printf("%s from step %llu on: %s\n", controller.c_str(), static_cast<unsigned long long>(reply->at_step()),
-                toText(fromMessages(message.values())).c_str());
+    say("%s from step %llu on: %s\n", controller.c_str(), static_cast<unsigned long long>(reply->at_step()),
+        toText(fromMessages(message.values())).c_str());
   } else {
-    std::printf("refused: %s; nothing is changed (`baton param list %s` tells what it has)\n", reply->reason().c_str(),
-                controller.c_str());
+    say("refused: %s; nothing is changed (`baton param list %s` tells what it has)\n", reply->reason().c_str(),
+        controller.c_str());
   }
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -18,6 +17,7 @@
 #include "messages/state_names.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/json.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -91,25 +91,25 @@ void tell(const PlayerArguments& arguments) {
   const double position_s = inSeconds(status.position_ns());
   const double duration_s = inSeconds(status.duration_ns());
   if (arguments.target.json) {
-    std::cout << toText(Json{{"file", status.path().c_str()},
-                             {"domain", place.domain},
-                             {"cell", place.cell},
-                             {"run", place.run},
-                             {"state", toString(status.state())},
-                             {"waiting_for", status.waiting_for().c_str()},
-                             {"position_s", position_s},
-                             {"duration_s", duration_s},
-                             {"pass", status.pass()},
-                             {"passes", status.passes()},
-                             {"rate", status.rate()},
-                             {"messages", status.messages()},
-                             {"total", status.total()},
-                             {"lateness_us",
-                              {{"p50", status.lateness_p50_us()},
-                               {"p99", status.lateness_p99_us()},
-                               {"max", status.lateness_max_us()}}},
-                             {"overdue", status.overdue()}})
-              << '\n';
+    sayText(
+        toText(Json{
+            {"file", status.path().c_str()},
+            {"domain", place.domain},
+            {"cell", place.cell},
+            {"run", place.run},
+            {"state", toString(status.state())},
+            {"waiting_for", status.waiting_for().c_str()},
+            {"position_s", position_s},
+            {"duration_s", duration_s},
+            {"pass", status.pass()},
+            {"passes", status.passes()},
+            {"rate", status.rate()},
+            {"messages", status.messages()},
+            {"total", status.total()},
+            {"lateness_us",
+             {{"p50", status.lateness_p50_us()}, {"p99", status.lateness_p99_us()}, {"max", status.lateness_max_us()}}},
+            {"overdue", status.overdue()}}) +
+        '\n');
     return;
   }
   std::string text = fmt::format("{} in cell {}, run {}\n{} at {:.6f} of {:.6f} s, {}", escaped(status.path().c_str()),
@@ -123,7 +123,7 @@ void tell(const PlayerArguments& arguments) {
       "overdue\n",
       status.messages(), status.total(), status.lateness_p50_us(), status.lateness_p99_us(), status.lateness_max_us(),
       status.overdue());
-  std::cout << text;
+  sayText(text);
 }
 
 void ask(const PlayerArguments& arguments, ExitCode& exit_code) {
@@ -149,15 +149,15 @@ void ask(const PlayerArguments& arguments, ExitCode& exit_code) {
   exit_code = reply->accepted() ? ExitCode::kOk : ExitCode::kFailed;
   const double position_s = inSeconds(reply->position_ns());
   if (arguments.target.json) {
-    std::cout << toText(Json{{"accepted", reply->accepted()},
-                             {"position_s", position_s},
-                             {"messages", reply->messages()},
-                             {"reason", reply->reason().c_str()}})
-              << '\n';
+    sayText(toText(Json{{"accepted", reply->accepted()},
+                        {"position_s", position_s},
+                        {"messages", reply->messages()},
+                        {"reason", reply->reason().c_str()}}) +
+            '\n');
   } else if (reply->accepted()) {
-    std::cout << fmt::format("done at {:.6f} s, {} messages sent\n", position_s, reply->messages());
+    sayText(fmt::format("done at {:.6f} s, {} messages sent\n", position_s, reply->messages()));
   } else {
-    std::cout << fmt::format("refused at {:.6f} s: {}\n", position_s, reply->reason().c_str());
+    sayText(fmt::format("refused at {:.6f} s: {}\n", position_s, reply->reason().c_str()));
   }
 }
 

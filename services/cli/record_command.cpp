@@ -2,7 +2,6 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/progress_line.hpp"
+#include "runtime/say.hpp"
 #include "runtime/service_options.hpp"
 
 namespace baton {
@@ -62,17 +62,17 @@ Json toJson(const msg::RecorderStatus& status) {
 }
 
 void print(const msg::RecorderStatus& status) {
-  std::printf("%s %s", toString(status.state()), status.path().c_str());
-  if (status.part() > 0) std::printf(", part %u", status.part());
-  std::printf("\n%llu messages, %.2f MB %s, %llu lost, every loop sample up to step %llu\n", ull{status.messages()},
-              mega(status.bytes()), status.ring() ? "in memory" : "in the file", ull{status.lost()},
-              ull{status.acknowledged_step()});
-  std::printf("%llu samples (%.2f MB) wait to be written, %.0f MB are left on the disk\n", ull{status.queued()},
-              mega(status.queued_bytes()), mega(status.disk_left()));
+  say("%s %s", toString(status.state()), status.path().c_str());
+  if (status.part() > 0) say(", part %u", status.part());
+  say("\n%llu messages, %.2f MB %s, %llu lost, every loop sample up to step %llu\n", ull{status.messages()},
+      mega(status.bytes()), status.ring() ? "in memory" : "in the file", ull{status.lost()},
+      ull{status.acknowledged_step()});
+  say("%llu samples (%.2f MB) wait to be written, %.0f MB are left on the disk\n", ull{status.queued()},
+      mega(status.queued_bytes()), mega(status.disk_left()));
   for (const msg::WriterLoss& loss : status.losses()) {
-    std::printf("  %-20s %-16s %llu lost\n", loss.topic().c_str(), loss.service().c_str(), ull{loss.lost()});
+    say("  %-20s %-16s %llu lost\n", loss.topic().c_str(), loss.service().c_str(), ull{loss.lost()});
   }
-  if (status.text().size() > 0) std::printf("%s\n", status.text().c_str());
+  if (status.text().size() > 0) say("%s\n", status.text().c_str());
 }
 
 void recordStatus(const CellTarget& target, ExitCode& exit_code) {
@@ -82,7 +82,7 @@ void recordStatus(const CellTarget& target, ExitCode& exit_code) {
   if (!status) throw UnavailableError("the recorder says nothing; see `baton logs recorder`");
   exit_code = status->state() == msg::RECORDER_FAILED ? ExitCode::kFailed : ExitCode::kOk;
   if (target.json) {
-    std::cout << toText(toJson(*status)) << '\n';
+    sayText(toText(toJson(*status)) + '\n');
   } else {
     print(*status);
   }
@@ -107,7 +107,7 @@ std::string nameOf(const std::string& out, const RunInfo& run) {
   std::string name = path.filename().string();
   if (std::filesystem::exists(path))
     throw UnavailableError("--out " + path.string() + " is there already: choose another name");
-  if (!isFileName(name, ".mcap")) throw UsageError("--out " + printable(out) + ": expected a file that ends in .mcap");
+  if (!isFileName(name, ".mcap")) throw UsageError("--out " + escaped(out) + ": expected a file that ends in .mcap");
   constexpr std::size_t kMaxPath = 400;
   if (path.string().size() > kMaxPath) throw UsageError("--out: expected a path of at most 400 characters");
   sendElsewhere(run, path);
@@ -132,18 +132,18 @@ void ask(const RecordArguments& arguments, msg::RecordAction action, ExitCode& e
   if (!reply) throw UnavailableError("the recorder did not answer; see `baton record status`");
   exit_code = reply->accepted() ? ExitCode::kOk : ExitCode::kFailed;
   if (arguments.target.json) {
-    std::cout << toText(Json{{"accepted", reply->accepted()},
-                             {"state", toString(reply->state())},
-                             {"step", reply->step()},
-                             {"path", reply->path().c_str()},
-                             {"text", reply->text().c_str()}})
-              << '\n';
+    sayText(toText(Json{{"accepted", reply->accepted()},
+                        {"state", toString(reply->state())},
+                        {"step", reply->step()},
+                        {"path", reply->path().c_str()},
+                        {"text", reply->text().c_str()}}) +
+            '\n');
   } else if (reply->accepted()) {
     const std::string text = reply->text().c_str();
-    std::printf("%s: %s%s\n", doneText(action, reply->step()).c_str(), reply->path().c_str(),
-                text.empty() ? "" : (", " + text).c_str());
+    say("%s: %s%s\n", doneText(action, reply->step()).c_str(), reply->path().c_str(),
+        text.empty() ? "" : (", " + text).c_str());
   } else {
-    std::printf("refused at step %llu: %s\n", ull{reply->step()}, reply->text().c_str());
+    say("refused at step %llu: %s\n", ull{reply->step()}, reply->text().c_str());
   }
 }
 

@@ -1,6 +1,5 @@
 #include "rerun_command.hpp"
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -10,6 +9,7 @@
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/recording_files.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -46,7 +46,7 @@ Rerun rerunIn(const fs::path& folder, const mcap::FileList& files, const RunRequ
     return rerun(files, folder, run, runToTheEnd);
   } catch (const std::exception&) {
     if (fs::exists(run.out)) {
-      std::fprintf(stderr, "baton: what was repeated is in %s\n", folder.c_str());
+      say(stderr, "baton: what was repeated is in %s\n", folder.c_str());
     } else {
       fs::remove_all(folder);
     }
@@ -64,10 +64,10 @@ void tellRerun(const RerunRequest& request, ExitCode& exit_code) {
   if (!is_kept) run.out = (folder / "rerun.mcap").string();
   const Rerun made = rerunIn(folder, files, run);
   if (request.json) {
-    std::puts(toText(toJson(made, files.string())).c_str());
+    sayText(toText(toJson(made, files.string())) + '\n');
   } else {
-    std::printf("%s\n", made.text().c_str());
-    if (is_kept || !made.isIdentical()) std::printf("recording %s\n", made.recording.c_str());
+    say("%s\n", made.text().c_str());
+    if (is_kept || !made.isIdentical()) say("recording %s\n", made.recording.c_str());
   }
   if (made.isIdentical()) fs::remove_all(folder);  // else it is there to look into
   exit_code = made.isIdentical() ? holes : ExitCode::kFailed;

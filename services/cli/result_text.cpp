@@ -1,9 +1,9 @@
 // How a finished run is told to a person.
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
 #include "run_session.hpp"
+#include "runtime/say.hpp"
 #include "timing_text.hpp"
 
 namespace baton {
@@ -19,64 +19,62 @@ void printSwap(const nlohmann::ordered_json& swap) {
   const std::string from = swap.at("outgoing").get<std::string>();
   const std::string to = swap.at("incoming").get<std::string>();
   const std::string reason = swap.at("reason").get<std::string>();
-  std::printf("  step %6llu  %s -> %s", static_cast<unsigned long long>(swap.at("at_step")),
-              from.empty() ? "(brake)" : from.c_str(), to.empty() ? "(brake)" : to.c_str());
+  say("  step %6llu  %s -> %s", static_cast<unsigned long long>(swap.at("at_step")),
+      from.empty() ? "(brake)" : from.c_str(), to.empty() ? "(brake)" : to.c_str());
   if (!swap.at("done").get<bool>()) {
-    std::printf(": refused, %s\n", reason.c_str());
+    say(": refused, %s\n", reason.c_str());
     return;
   }
-  std::printf(": torques %.2g apart, the joints felt a change of %.2g", largest(swap.at("raw_effort_step")),
-              largest(swap.at("applied_effort_step")));
+  say(": torques %.2g apart, the joints felt a change of %.2g", largest(swap.at("raw_effort_step")),
+      largest(swap.at("applied_effort_step")));
   if (const auto& report = swap.at("report"); !report.is_null() && report.at("rate_limit_hits") > 0) {
-    std::printf(", %llu times faster than max_effort_rate",
-                static_cast<unsigned long long>(report.at("rate_limit_hits")));
+    say(", %llu times faster than max_effort_rate", static_cast<unsigned long long>(report.at("rate_limit_hits")));
   }
-  std::printf("%s%s\n", reason.empty() ? "" : "; ", reason.c_str());
+  say("%s%s\n", reason.empty() ? "" : "; ", reason.c_str());
 }
 
 void printRecording(const nlohmann::ordered_json& recording) {
   const std::string summary = recording.at("summary").get<std::string>();
   if (recording.at("path").is_null()) {
-    std::printf("recording   none%s\n", summary.empty() ? "" : (": " + summary).c_str());
+    say("recording   none%s\n", summary.empty() ? "" : (": " + summary).c_str());
     return;
   }
-  std::printf("recording   %s\n            %.2f MB, %llu messages, %s\n",
-              recording.at("path").get<std::string>().c_str(), recording.at("bytes").get<double>() / 1e6,
-              static_cast<unsigned long long>(recording.at("messages")), summary.c_str());
+  say("recording   %s\n            %.2f MB, %llu messages, %s\n", recording.at("path").get<std::string>().c_str(),
+      recording.at("bytes").get<double>() / 1e6, static_cast<unsigned long long>(recording.at("messages")),
+      summary.c_str());
 }
 
 }  // namespace
 
 void printResult(const nlohmann::ordered_json& result) {
   const double elapsed_s = result.at("elapsed_s");
-  std::printf("%s: %s", result.at("scenario").get<std::string>().c_str(),
-              result.at("state").get<std::string>().c_str());
-  if (const std::string reason = result.at("reason"); !reason.empty()) std::printf(" (%s)", reason.c_str());
-  std::printf("\n");
+  say("%s: %s", result.at("scenario").get<std::string>().c_str(), result.at("state").get<std::string>().c_str());
+  if (const std::string reason = result.at("reason"); !reason.empty()) say(" (%s)", reason.c_str());
+  say("\n");
   if (result.at("startup_s").get<double>() >= 0.0) {
     double motion_s = result.at("sim_time_s");
     if (const auto first = result.value("first_step", std::uint64_t{0}); first > 0)  // it went on from there
       motion_s -= static_cast<double>(first) * result.at("step_ns").get<double>() * 1e-9;
-    std::printf("steps       %llu, %.6g s of motion in %.2f s: %.2f x real time, started in %.2f s\n",
-                static_cast<unsigned long long>(result.at("steps")), motion_s, elapsed_s,
-                result.at("real_time_ratio").get<double>(), result.at("startup_s").get<double>());
+    say("steps       %llu, %.6g s of motion in %.2f s: %.2f x real time, started in %.2f s\n",
+        static_cast<unsigned long long>(result.at("steps")), motion_s, elapsed_s,
+        result.at("real_time_ratio").get<double>(), result.at("startup_s").get<double>());
   }
-  std::printf("hash        %s: runs with the same one have the same bytes, step by step\n",
-              result.at("chain_hash").get<std::string>().c_str());
+  say("hash        %s: runs with the same one have the same bytes, step by step\n",
+      result.at("chain_hash").get<std::string>().c_str());
   if (const std::uint64_t missed = result.at("missed_steps"); missed > 0) {
-    std::printf("missed      %llu steps had to use an old torque\n", static_cast<unsigned long long>(missed));
+    say("missed      %llu steps had to use an old torque\n", static_cast<unsigned long long>(missed));
   }
   // In one process there is no clock to keep.
   if (const auto timing = result.find("timing"); timing != result.end() && !timing->at("jitter_us").is_null()) {
-    std::printf("timing      %s\n", timingText(*timing).c_str());
+    say("timing      %s\n", timingText(*timing).c_str());
   }
-  if (!result.at("swaps").empty()) std::printf("handovers   [N m or N, largest over the joints]\n");
+  if (!result.at("swaps").empty()) say("handovers   [N m or N, largest over the joints]\n");
   for (const auto& swap : result.at("swaps")) {
     const bool has_come = swap.at("done").get<bool>() || swap.at("at_step") < result.at("steps");
     if (has_come) printSwap(swap);
   }
   if (const auto& recording = result.at("recording"); !recording.is_null()) printRecording(recording);
-  if (result.contains("folder")) std::printf("logs        %s\n", result.at("folder").get<std::string>().c_str());
+  if (result.contains("folder")) say("logs        %s\n", result.at("folder").get<std::string>().c_str());
 }
 
 }  // namespace baton

@@ -16,6 +16,7 @@
 #include "runtime/monolithic_run.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/progress_line.hpp"
+#include "runtime/say.hpp"
 #include "runtime/swap_report.hpp"
 #include "runtime/timing.hpp"
 
@@ -78,7 +79,7 @@ void addRunOptions(CLI::App& command, RunRequest& request) {
 
 void tell(const nlohmann::ordered_json& result, bool json) {
   if (json) {
-    std::cout << toText(result) << '\n';
+    sayText(toText(result) + '\n');
   } else {
     printResult(result);
   }
@@ -92,7 +93,7 @@ nlohmann::ordered_json runInProcess(const std::string& scenario_name) {
   const std::chrono::steady_clock::time_point launched = std::chrono::steady_clock::now();
   const std::string file = findScenario(scenario_name).string();
   const Scenario scenario = loadScenario(file);
-  for (const std::string& warning : scenario.warnings) std::fprintf(stderr, "baton: warning: %s\n", warning.c_str());
+  for (const std::string& warning : scenario.warnings) say(stderr, "baton: warning: %s\n", warning.c_str());
   if (scenario.end_step == 0) {
     throw UsageError(file + ": expected a scenario with an end (duration_s), found none");
   }
@@ -157,21 +158,21 @@ void up(const RunRequest& request, ExitCode& exit_code) {
   line.show("");
   if (ended == ExitCode::kInterrupted) throw Error(ExitCode::kInterrupted, "interrupted before the run began");
   if (ended && *ended != ExitCode::kOk) {
-    std::fprintf(stderr, "baton: the run did not start; the end of %s:\n%s", session.logFile().c_str(),
-                 lastLines(session.logFile(), 8).c_str());
+    say(stderr, "baton: the run did not start; the end of %s:\n%s", session.logFile().c_str(),
+        lastLines(session.logFile(), 8).c_str());
     exit_code = *ended;
     return;
   }
-  std::printf("up: run %s in cell %s, domain %d\nlogs %s\n", session.info().run.c_str(), session.info().cell.c_str(),
-              session.info().domain, session.info().folder.c_str());
-  if (!session.info().recording.empty()) std::printf("recording %s\n", session.info().recording.c_str());
+  say("up: run %s in cell %s, domain %d\nlogs %s\n", session.info().run.c_str(), session.info().cell.c_str(),
+      session.info().domain, session.info().folder.c_str());
+  if (!session.info().recording.empty()) say("recording %s\n", session.info().recording.c_str());
   const std::string where = (session.info().cell == "lab" ? "" : " --cell " + session.info().cell) +
                             (session.info().domain == 0 ? "" : " --domain " + std::to_string(session.info().domain));
-  std::printf("try:");
+  say("try:");
   for (const char* command : {" baton status", " | baton controllers", " | baton swap NAME", " | baton down"}) {
-    std::printf("%s%s", command, where.c_str());
+    say("%s%s", command, where.c_str());
   }
-  std::printf("\n");
+  say("\n");
 }
 
 void down(const std::string& cell, int domain, bool json, ExitCode& exit_code) {
@@ -222,7 +223,7 @@ void logs(const std::string& cell, int domain, const std::string& service, int l
     names += (names.empty() ? "" : ", ") + name;
     if (!service.empty() && name != service) continue;
     found = true;
-    std::printf("%s\n%s", entry.path().c_str(), lastLines(entry.path(), static_cast<std::size_t>(lines)).c_str());
+    say("%s\n%s", entry.path().c_str(), lastLines(entry.path(), static_cast<std::size_t>(lines)).c_str());
   }
   if (names.empty()) throw UnavailableError(folder.string() + " has no logs: its run ended before it began");
   if (!found) throw UsageError("no log of " + service + ": expected one of " + names);
@@ -268,8 +269,7 @@ void addRunCommands(CLI::App& app, ExitCode& exit_code) {
     const nlohmann::ordered_json result = session.result();
     tell(result, *json);
     if (result.at("state") == "not_started") {
-      std::fprintf(stderr, "baton: the end of %s:\n%s", session.logFile().c_str(),
-                   lastLines(session.logFile(), 8).c_str());
+      say(stderr, "baton: the end of %s:\n%s", session.logFile().c_str(), lastLines(session.logFile(), 8).c_str());
     }
   });
 

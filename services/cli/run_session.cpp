@@ -11,7 +11,6 @@
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -25,6 +24,7 @@
 #include "runtime/log.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/recording_parts.hpp"
+#include "runtime/say.hpp"
 #include "runtime/scenario.hpp"
 #include "runtime/signals.hpp"
 
@@ -127,7 +127,7 @@ RunSession::~RunSession() = default;
 RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std::make_unique<SignalCounter>()) {
   info_.scenario = findScenario(request.scenario).string();
   const Scenario scenario = loadScenario(info_.scenario);  // a mistake in it is told here, not in a log
-  for (const std::string& warning : scenario.warnings) std::fprintf(stderr, "baton: warning: %s\n", warning.c_str());
+  for (const std::string& warning : scenario.warnings) say(stderr, "baton: warning: %s\n", warning.c_str());
   if (const std::optional<RunInfo> other = activeRun(request.domain, request.cell)) {
     throw UnavailableError("cell " + request.cell + " is in use by run " + other->run + " of " + other->scenario +
                            ": end it with `baton down --cell " + request.cell + " --domain " +

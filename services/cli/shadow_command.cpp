@@ -1,6 +1,5 @@
 #include "shadow_command.hpp"
 
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -9,6 +8,7 @@
 #include "runtime/json.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/recording_files.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -23,22 +23,21 @@ struct ShadowRequest {
 void shadow(const ShadowRequest& request, ExitCode& exit_code) {
   const mcap::FileList files = findRecording(request.recording, exit_code);
   const RecordedEfforts run = readEfforts(files);
-  if (!run.trace.is_complete)
-    std::fprintf(stderr, "baton: warning: %s is not certified complete\n", files.string().c_str());
+  if (!run.trace.is_complete) say(stderr, "baton: warning: %s is not certified complete\n", files.string().c_str());
   const Shadow table = shadowOf(run);
   const fs::path stem = fs::path(request.out) / (run.trace.scenario.name + "_shadow");
   if (request.json) {
     nlohmann::ordered_json json = toJson(table);
     if (!request.out.empty()) json["drawing"] = stem.string() + ".svg";
-    std::puts(toText(json).c_str());
+    sayText(toText(json) + '\n');
   } else {
-    std::fputs(toText(table).c_str(), stdout);
+    sayText(toText(table));
   }
   if (request.out.empty()) return;
   makeFolder(request.out);
   draw(stem, run.trace.scenario.name + ": what each controller commanded, or would have", shadowPanels(run),
        {{.label = "", .trace = &run.trace}});
-  if (!request.json) std::printf("%s.svg\n", stem.c_str());
+  if (!request.json) say("%s.svg\n", stem.c_str());
 }
 
 }  // namespace

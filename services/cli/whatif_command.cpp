@@ -2,7 +2,6 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -21,6 +20,7 @@
 #include "runtime/paths.hpp"
 #include "runtime/progress_line.hpp"
 #include "runtime/recording_files.hpp"
+#include "runtime/say.hpp"
 #include "whatif/command_file.hpp"
 #include "whatif/counterfactual.hpp"
 
@@ -131,16 +131,15 @@ void whatIf(const WhatIfRequest& request) {
   const Counterfactual made = request.out.empty() ? counterfactual(request.files, request.wish, {}, progress)
                                                   : makeWithFiles(request, progress, files);
   line.show("");
-  if (!made.is_complete)
-    std::fprintf(stderr, "baton: warning: %s is not certified complete\n", request.files.string().c_str());
+  if (!made.is_complete) say(stderr, "baton: warning: %s is not certified complete\n", request.files.string().c_str());
   if (request.json) {
     nlohmann::ordered_json json = toJson(made);
     if (!files.empty()) json["files"] = files;
-    std::puts(toText(json).c_str());
+    sayText(toText(json) + '\n');
     return;
   }
-  std::fputs(toText(made).c_str(), stdout);
-  for (const std::string& file : files) std::printf("%s\n", file.c_str());
+  sayText(toText(made));
+  for (const std::string& file : files) say("%s\n", file.c_str());
 }
 
 }  // namespace

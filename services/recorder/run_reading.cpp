@@ -19,11 +19,12 @@ bool isOfCell(const dds::DiscoveredWriter& writer, const std::string& partition)
 
 /// @param told  how many writers have been told of.
 bool isAdmitted(Service& service, const dds::DiscoveredWriter& writer, std::atomic<std::size_t>& told) {
-  if (hasControlCharacters(writer.topic) || hasControlCharacters(writer.type)) {
+  if (!isPlain(writer.topic) || !isPlain(writer.type)) {
     if (told++ < kMaxStrangersTold) {
-      service.event(msg::SEVERITY_WARNING, "stranger",
-                    "a writer of " + dds::toString(writer.guid) +
-                        " is not recorded: control characters in the name of its topic or type");
+      service.event(
+          msg::SEVERITY_WARNING, "stranger",
+          "a writer of " + dds::toString(writer.guid) +
+              " is not recorded: control characters in the name of its topic or type, or bytes that are not UTF-8");
     }
     return false;
   }

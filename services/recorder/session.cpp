@@ -232,7 +232,7 @@ std::string RecordingSession::objectionTo(const msg::RecordRequest& request) con
   if (const std::string name = request.path().c_str(); !name.empty() && !isFileName(name, ".mcap")) {
     return "expected the name of a file that ends in .mcap, without a folder: it lies where the run's recording does; "
            "found " +
-           printable(name);
+           escaped(name);
   }
   if (request.action() != msg::RECORD_SNAPSHOT) return "";
   const std::filesystem::path path = pathOf(request);

@@ -30,11 +30,11 @@ dds::Liveliness livelinessOf(const std::map<std::string, std::string>& qos) {
 /// Fast DDS cuts a longer name short, and any name at a zero.
 void checkName(const std::string& topic, const std::string& what, const std::string& name) {
   constexpr std::size_t kMostBytes = 255;
-  if (!name.empty() && name.size() <= kMostBytes && !hasControlCharacters(name)) return;
+  if (!name.empty() && name.size() <= kMostBytes && isPlain(name)) return;
   constexpr std::size_t kShown = 60;
-  throw UsageError("topic " + printable(topic.substr(0, kShown)) + ": expected " + what + " of 1 to " +
-                   std::to_string(kMostBytes) + " bytes without control characters, found " +
-                   (name.empty() ? "none" : "'" + printable(name.substr(0, kShown)) + "'") +
+  throw UsageError("topic " + escaped(topic.substr(0, kShown)) + ": expected " + what + " of 1 to " +
+                   std::to_string(kMostBytes) + " bytes in UTF-8 without control characters, found " +
+                   (name.empty() ? "none" : "'" + escaped(name.substr(0, kShown)) + "'") +
                    (name.size() > kShown ? " of " + std::to_string(name.size()) + " bytes" : ""));
 }
 

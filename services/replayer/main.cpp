@@ -1,10 +1,10 @@
 // The replayer: publishes a recording again, raw, on its topics and in its rhythm.
-#include <cstdio>
 
 #include "options.hpp"
 #include "replayer.hpp"
 #include "runtime/log.hpp"
 #include "runtime/run.hpp"
+#include "runtime/say.hpp"
 #include "summary.hpp"
 
 int main(int argc, char** argv) {
@@ -13,10 +13,10 @@ int main(int argc, char** argv) {
     if (!baton::parseReplayOptions(argc, argv, options)) return baton::ExitCode::kOk;
     baton::setUpLog("replayer");
     baton::Replayer replayer(options);
-    std::fprintf(stderr, "replaying %s in domain %d, cell %s, run %s\n", options.file.c_str(), options.domain,
-                 options.cell.c_str(), options.run.c_str());
+    baton::say(stderr, "replaying %s in domain %d, cell %s, run %s\n", options.file.c_str(), options.domain,
+               options.cell.c_str(), options.run.c_str());
     const baton::ReplayResult result = replayer.run();
-    std::puts((options.json ? jsonText(result, options) : summaryText(result, options)).c_str());
+    baton::sayText((options.json ? jsonText(result, options) : summaryText(result, options)) + '\n');
     return exitCode(result);
   });
 }

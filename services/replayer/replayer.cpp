@@ -5,10 +5,10 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "dds/interfaces.hpp"
 #include "runtime/cell.hpp"
+#include "runtime/say.hpp"
 #include "runtime/service_options.hpp"
 
 namespace baton {
@@ -90,7 +90,7 @@ ReplayResult Replayer::run() {
   terminal_.emplace();
   progress_.emplace();
   if (terminal_->hasKeys()) {
-    std::fputs("space: pause, resume   right, left: ahead, back   + -: rate   q: quit   (--help)\n", stderr);
+    say(stderr, "space: pause, resume   right, left: ahead, back   + -: rate   q: quit   (--help)\n");
   }
   waitForReaders();
   begin_ns_ = steadyNow();

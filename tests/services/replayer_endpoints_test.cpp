@@ -141,7 +141,8 @@ TEST(ReplayEndpoint, RefusesNamesThatDdsWouldChange) {
     }
   };
   EXPECT_EQ(error(std::string(255, 't'), std::string(255, 'T')), "");
-  EXPECT_EQ(error("", "T"), "topic : expected a name of 1 to 255 bytes without control characters, found none");
+  EXPECT_EQ(error("", "T"),
+            "topic : expected a name of 1 to 255 bytes in UTF-8 without control characters, found none");
   EXPECT_NE(error("t", std::string(256, 'T')).find("of 256 bytes"), std::string::npos);
   EXPECT_NE(error(std::string(256, 't'), "T"), "");
   EXPECT_NE(error(std::string("t\0u", 3), "T"), "");

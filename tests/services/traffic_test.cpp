@@ -117,7 +117,7 @@ TEST(TrafficResult, NamesWhatIsLostAndIsSafeToPrint) {
   const std::string text = textOf(result, {});
   EXPECT_NE(text.find("0 of 2 topics, 3 lost"), std::string::npos) << text;
   EXPECT_EQ(text.find('\x1b'), std::string::npos);
-  EXPECT_NE(text.find("problem     b of  [2J: 3 samples are missing"), std::string::npos) << text;
+  EXPECT_NE(text.find("problem     b of \\x1b[2J: 3 samples are missing"), std::string::npos) << text;
   const nlohmann::json json = nlohmann::json::parse(jsonOf(result, {}));
   EXPECT_EQ(json.at("lost"), 3);
   EXPECT_EQ(json.at("exit_code"), 1);

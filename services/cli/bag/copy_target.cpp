@@ -1,12 +1,12 @@
 #include "bag/copy_target.hpp"
 
-#include <cstdio>
 #include <filesystem>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "mcap/repeated.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 
@@ -43,11 +43,10 @@ mcap::WriterOptions optionsFor(const CopyTarget& target, const std::vector<std::
 
 void sayHowItIs(const std::string& file, const mcap::FileInfo& info) {
   if (!info.is_complete) {
-    std::fprintf(stderr, "%s is not whole, and is used as far as it goes: %s\n", file.c_str(),
-                 escaped(info.problem).c_str());
+    say(stderr, "%s is not whole, and is used as far as it goes: %s\n", file.c_str(), escaped(info.problem).c_str());
   }
   for (const std::string& text : info.contradictions) {
-    std::fprintf(stderr, "%s is copied as its data have it: %s\n", file.c_str(), escaped(text).c_str());
+    say(stderr, "%s is copied as its data have it: %s\n", file.c_str(), escaped(text).c_str());
   }
 }
 

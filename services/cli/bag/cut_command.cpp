@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <set>
 #include <string>
@@ -19,6 +18,7 @@
 #include "runtime/json.hpp"
 #include "runtime/latched.hpp"
 #include "runtime/progress_line.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -132,17 +132,16 @@ ExitCode cut(CutRequest& request) {
   if (copied.repeated > 0) copy.metadata(mcap::kRepeatedRecord, mcap::repeatedRecord(copied.repeated));
   copy.finish();
   if (request.json) {
-    std::puts(toText({{"file", in},
-                      {"out", request.out.file},
-                      {"messages", copied.kept},
-                      {"left_out", copied.of - copied.kept},
-                      {"latched", copied.repeated}})
-                  .c_str());
+    sayText(toText({{"file", in},
+                    {"out", request.out.file},
+                    {"messages", copied.kept},
+                    {"left_out", copied.of - copied.kept},
+                    {"latched", copied.repeated}}) +
+            '\n');
   } else {
-    fmt::print("cut         {}: {} of {} messages of {}\n", request.out.file, copied.kept, copied.of, in);
+    sayf("cut         {}: {} of {} messages of {}\n", request.out.file, copied.kept, copied.of, in);
     if (copied.repeated > 0) {
-      fmt::print("            and in front {} from before, as a late joiner would have been given them\n",
-                 copied.repeated);
+      sayf("            and in front {} from before, as a late joiner would have been given them\n", copied.repeated);
     }
   }
   return exit_code;

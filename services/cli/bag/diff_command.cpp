@@ -1,7 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <string>
 
@@ -11,6 +10,7 @@
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
 #include "runtime/recording_files.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -48,24 +48,24 @@ void printText(const DiffRequest& request, const RecordingDiff& diff) {
     service_width = std::max(service_width, escaped(key.second).size());
   }
   const auto first = diff.firstDifferent();
-  fmt::print("{}: A {}, B {}\n{}", diff.isSame() ? "same" : "different", request.a.string(), request.b.string(),
-             takesText(diff));
+  sayf("{}: A {}, B {}\n{}", diff.isSame() ? "same" : "different", request.a.string(), request.b.string(),
+       takesText(diff));
   if (first) {
-    fmt::print("first       {}, {}\n", nameOf(*first), textOf(*diff.streams.at(*first).first));
+    sayf("first       {}, {}\n", nameOf(*first), textOf(*diff.streams.at(*first).first));
   }
   if (const auto later = diff.laterBegin()) {
-    fmt::print("begins      A at step {}, B at step {}: --from-step {} leaves out what one alone has\n",
-               *diff.first_step[0], *diff.first_step[1], *later);
+    sayf("begins      A at step {}, B at step {}: --from-step {} leaves out what one alone has\n", *diff.first_step[0],
+         *diff.first_step[1], *later);
   }
   if (!diff.left_out.empty()) {
-    fmt::print("left out    {}\n", escaped(fmt::format("{}", fmt::join(diff.left_out, ", "))));
+    sayf("left out    {}\n", escaped(fmt::format("{}", fmt::join(diff.left_out, ", "))));
   }
-  fmt::print("\n{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  first difference, A | B\n", "topic", topic_width, "service",
-             service_width, "compared", "different", "only in A", "only in B");
+  sayf("\n{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  first difference, A | B\n", "topic", topic_width, "service",
+       service_width, "compared", "different", "only in A", "only in B");
   for (const auto& [key, stream] : diff.streams) {
-    fmt::print("{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  {}\n", escaped(key.first), topic_width, escaped(key.second),
-               service_width, stream.compared, stream.different, stream.only_a, stream.only_b,
-               stream.first ? textOf(*stream.first) : "");
+    sayf("{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  {}\n", escaped(key.first), topic_width, escaped(key.second),
+         service_width, stream.compared, stream.different, stream.only_a, stream.only_b,
+         stream.first ? textOf(*stream.first) : "");
   }
 }
 
@@ -117,10 +117,10 @@ ExitCode diff(DiffWish& wish) {
     found = diffRecordings(request, [&](double part) { line.show("comparing " + progressBar(part)); });
   }
   for (const std::string& warning : found.warnings) {
-    std::fprintf(stderr, "baton: warning: %s\n", escaped(warning).c_str());
+    say(stderr, "baton: warning: %s\n", escaped(warning).c_str());
   }
   if (wish.json) {
-    std::puts(toText(toJson(request, found)).c_str());
+    sayText(toText(toJson(request, found)) + '\n');
   } else {
     printText(request, found);
   }

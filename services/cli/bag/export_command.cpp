@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <compare>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -18,6 +17,7 @@
 #include "mcap/lookup.hpp"
 #include "runtime/paths.hpp"
 #include "runtime/recorded_types.hpp"
+#include "runtime/say.hpp"
 #include "schema/error.hpp"
 
 namespace baton {
@@ -60,7 +60,7 @@ class Export {
     messages_.forEach("writing ", [&](const mcap::MessageView& message) { return write(message); });
     for (auto& [key, table] : tables_) table.file->finish();
     for (const auto& [key, table] : tables_) {
-      std::printf("%s  %llu messages\n", paths_.at(key).c_str(), static_cast<unsigned long long>(table.messages));
+      say("%s  %llu messages\n", paths_.at(key).c_str(), static_cast<unsigned long long>(table.messages));
     }
     return messages_.exitCode();
   }

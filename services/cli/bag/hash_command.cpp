@@ -1,5 +1,4 @@
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 #include "report/recording.hpp"
 #include "runtime/json.hpp"
 #include "runtime/recording_files.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -69,10 +69,10 @@ ExitCode hash(const HashRequest& request) {
     is_good = is_good && is_same;
   }
   if (request.json) {
-    std::puts(toText(json).c_str());
+    sayText(toText(json) + '\n');
   } else {
-    std::printf("%s of steps %s to %s\n%s\n", json["hash"].get<std::string>().c_str(),
-                json["first_step"].dump().c_str(), json["last_step"].dump().c_str(), verdict.c_str());
+    say("%s of steps %s to %s\n%s\n", json["hash"].get<std::string>().c_str(), json["first_step"].dump().c_str(),
+        json["last_step"].dump().c_str(), verdict.c_str());
   }
   return is_good ? holes : ExitCode::kFailed;
 }

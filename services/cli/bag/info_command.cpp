@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -24,6 +23,7 @@
 #include "mcap/repeated.hpp"
 #include "runtime/json.hpp"
 #include "runtime/recording_files.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -158,12 +158,12 @@ void printTopics(const BagSummary& bag) {
     name_width = std::max(name_width, escaped(key.first).size());
     type_width = std::max(type_width, escaped(key.second).size());
   }
-  fmt::print("\n{:<{}}  {:<{}}  {:>9}  {:>9}  {:>6}  writers\n", "topic", name_width, "type", type_width, "messages",
-             "rate [Hz]", "gaps");
+  sayf("\n{:<{}}  {:<{}}  {:>9}  {:>9}  {:>6}  writers\n", "topic", name_width, "type", type_width, "messages",
+       "rate [Hz]", "gaps");
   for (const auto& [key, topic] : bag.topics) {
-    fmt::print("{:<{}}  {:<{}}  {:>9}  {:>9.1f}  {:>6}  {}\n", escaped(key.first), name_width, escaped(key.second),
-               type_width, topic.messages, topic.rate(), topic.gaps ? fmt::to_string(*topic.gaps) : "-",
-               escaped(fmt::format("{}", fmt::join(topic.writers, ", "))));
+    sayf("{:<{}}  {:<{}}  {:>9}  {:>9.1f}  {:>6}  {}\n", escaped(key.first), name_width, escaped(key.second),
+         type_width, topic.messages, topic.rate(), topic.gaps ? fmt::to_string(*topic.gaps) : "-",
+         escaped(fmt::format("{}", fmt::join(topic.writers, ", "))));
   }
 }
 
@@ -175,28 +175,28 @@ std::vector<std::string> notesOn(const BagSummary& bag) {
 }
 
 void printText(const BagSummary& bag) {
-  fmt::print("{}: {}\n", bag.file, nameOf(verdictOn(bag)));
-  fmt::print("            {}\n", escaped(reasonFor(bag)));
-  for (std::size_t i = 1; i < bag.damage.size(); ++i) fmt::print("            {}\n", escaped(bag.damage[i]));
-  for (const std::string& note : notesOn(bag)) fmt::print("note        {}\n", escaped(note));
+  sayf("{}: {}\n", bag.file, nameOf(verdictOn(bag)));
+  sayf("            {}\n", escaped(reasonFor(bag)));
+  for (std::size_t i = 1; i < bag.damage.size(); ++i) sayf("            {}\n", escaped(bag.damage[i]));
+  for (const std::string& note : notesOn(bag)) sayf("note        {}\n", escaped(note));
   if (!bag.run.empty()) {
     const auto of = [&](const char* key) { return escaped(valueOf(bag.run, key)); };
     if (of("kind") == "traffic") {
-      fmt::print("recorded    traffic of domain {} on {} (interfaces: {}), begun {}\n", of("domain"), of("host"),
-                 of("interfaces"), of("begun"));
+      sayf("recorded    traffic of domain {} on {} (interfaces: {}), begun {}\n", of("domain"), of("host"),
+           of("interfaces"), of("begun"));
     } else {
-      fmt::print("recorded    {} with robot {}, run {} of cell {} on {}\n", of("scenario"), of("robot"), of("run"),
-                 of("cell"), of("host"));
+      sayf("recorded    {} with robot {}, run {} of cell {} on {}\n", of("scenario"), of("robot"), of("run"),
+           of("cell"), of("host"));
     }
-    fmt::print("by          Baton {}, {} ({})\n", of("version"), of("compiler"), of("flags"));
+    sayf("by          Baton {}, {} ({})\n", of("version"), of("compiler"), of("flags"));
   }
-  fmt::print("messages    {} in {:.3f} s\n", bag.messages, bag.duration());
-  for (const std::string& text : bag.log_times.findings()) fmt::print("note        {}\n", text);
-  fmt::print("size        {:.2f} MB, messages compressed {:.2f} : 1\n", static_cast<double>(bag.info.file_bytes) * 1e-6,
-             bag.compression());
+  sayf("messages    {} in {:.3f} s\n", bag.messages, bag.duration());
+  for (const std::string& text : bag.log_times.findings()) sayf("note        {}\n", text);
+  sayf("size        {:.2f} MB, messages compressed {:.2f} : 1\n", static_cast<double>(bag.info.file_bytes) * 1e-6,
+       bag.compression());
   for (const mcap::AttachmentIndex& attachment : bag.attachments) {
-    fmt::print("attachment  {} ({}, {} bytes)\n", escaped(attachment.name), escaped(attachment.media_type),
-               attachment.data_size);
+    sayf("attachment  {} ({}, {} bytes)\n", escaped(attachment.name), escaped(attachment.media_type),
+         attachment.data_size);
   }
   printTopics(bag);
 }
@@ -262,7 +262,7 @@ void addBagInfo(CLI::App& bag, ExitCode& exit_code) {
     const BagSummary summary = summarize(request->recording);
     if (request->json) {
       // Text in a recording may come from anywhere.
-      std::puts(toText(toJson(summary)).c_str());
+      sayText(toText(toJson(summary)) + '\n');
     } else {
       printText(summary);
     }

@@ -1,7 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -18,6 +17,7 @@
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
 #include "runtime/recording_files.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -176,9 +176,9 @@ ExitCode merge(MergeRequest& request) {
   copyMessages(sources, copy);
   copy.finish();
   if (request.json) {
-    std::puts(toText({{"out", request.out.file}, {"files", files}, {"messages", copy.messages()}}).c_str());
+    sayText(toText({{"out", request.out.file}, {"files", files}, {"messages", copy.messages()}}) + '\n');
   } else {
-    fmt::print("merged      {} files into {}: {} messages\n", sources.size(), request.out.file, copy.messages());
+    sayf("merged      {} files into {}: {} messages\n", sources.size(), request.out.file, copy.messages());
   }
   return ExitCode::kOk;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/text.hpp"
 #include "mcap/lookup.hpp"
 #include "runtime/recorded_types.hpp"
 #include "schema/error.hpp"
@@ -107,7 +108,7 @@ void appendJsonString(std::string& out, std::string_view text) {
   if (is_simple) {
     ((out += '"') += text) += '"';
   } else {
-    out += nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    out += escapedInJson(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   }
 }
 

@@ -1,6 +1,5 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <cstdio>
 #include <memory>
 #include <string>
 
@@ -9,6 +8,7 @@
 #include "base/text.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -46,17 +46,17 @@ std::string verdictOn(const mcap::Recovery& found) {
 }
 
 void printText(const RecoverRequest& request, const mcap::Recovery& found) {
-  fmt::print("{}: {}\n", request.in, escaped(verdictOn(found)));
+  sayf("{}: {}\n", request.in, escaped(verdictOn(found)));
   for (const mcap::Damage& damage : found.lost) {
     if (damage.messages > 0 || damage.length == 0) {
-      fmt::print("lost        {}\n", escaped(mcap::describe(damage)));
+      sayf("lost        {}\n", escaped(mcap::describe(damage)));
     } else {
-      fmt::print("lost        {} bytes from byte {} on: {}\n", damage.length, damage.offset, escaped(damage.reason));
+      sayf("lost        {} bytes from byte {} on: {}\n", damage.length, damage.offset, escaped(damage.reason));
     }
   }
-  for (const std::string& note : found.info.contradictions) fmt::print("note        {}\n", escaped(note));
-  fmt::print("recovered   {}: {} messages, {} attachments, {} metadata records\n", request.out.file, found.messages,
-             found.attachments, found.metadata);
+  for (const std::string& note : found.info.contradictions) sayf("note        {}\n", escaped(note));
+  sayf("recovered   {}: {} messages, {} attachments, {} metadata records\n", request.out.file, found.messages,
+       found.attachments, found.metadata);
 }
 
 nlohmann::ordered_json toJson(const RecoverRequest& request, const mcap::Recovery& found) {
@@ -91,7 +91,7 @@ ExitCode recover(const RecoverRequest& request) {
   const mcap::Recovery found = mcap::recover(request.in, request.out.file, options);
   line.clear();
   if (request.json) {
-    std::puts(toText(toJson(request, found)).c_str());
+    sayText(toText(toJson(request, found)) + '\n');
   } else {
     printText(request, found);
   }

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 
 #include "base/text.hpp"
 #include "control/nearest_name.hpp"
 #include "mcap/lookup.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -48,7 +48,7 @@ SelectedMessages::SelectedMessages(const Selection& selection)
 
 void SelectedMessages::warn(const std::string& file, const std::string& problem) {
   progress_.show("");
-  std::fprintf(stderr, "baton: warning: %s: %s\n", file.c_str(), escaped(problem).c_str());
+  say(stderr, "baton: warning: %s: %s\n", file.c_str(), escaped(problem).c_str());
 }
 
 void SelectedMessages::complain(const std::string& file, const std::string& problem) {

@@ -195,7 +195,7 @@ std::set<std::string> strangersIn(const std::vector<Part>& parts, const Ledger& 
                              ledger.servicesHeard() == 0 || (writer && ledger.isVouchedFor({channel.topic, *writer}));
       if (is_of_run && mayWrite(facts->written_by, roleCalled(service))) continue;
       found.insert(fmt::format("{}: a writer that is none of the run's services whose topic it is{}", channel.topic,
-                               service.empty() ? "" : ", and calls itself " + printable(service)));
+                               service.empty() ? "" : ", and calls itself " + escaped(service)));
     }
   }
   return found;

@@ -1,6 +1,5 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
 #include "runtime/recording_files.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -21,31 +21,31 @@ struct VerifyRequest {
 };
 
 void printText(const Verification& found) {
-  fmt::print("{}: {}\n", fmt::join(found.files, ", "), nameOf(found.verdict()));
+  sayf("{}: {}\n", fmt::join(found.files, ", "), nameOf(found.verdict()));
   if (found.verdict() == RecordingVerdict::kComplete) {
     if (found.is_traffic) {
-      fmt::print(
+      sayf(
           "            as received: by the bytes no sample is missing between a writer's first and last. It is traffic "
           "without\n");
-      fmt::print("            manifests, so what was sent before and after that is not known\n");
+      sayf("            manifests, so what was sent before and after that is not known\n");
     } else if (found.ledger.servicesHeard() > 0) {
-      fmt::print("            proven from the bytes: {} services vouch for what they sent, all of it is here\n",
-                 found.ledger.servicesHeard());
+      sayf("            proven from the bytes: {} services vouch for what they sent, all of it is here\n",
+           found.ledger.servicesHeard());
     } else {
-      fmt::print(
+      sayf(
           "            by the bytes no sample is missing between a writer's first and last; the run went on when "
           "this\n");
-      fmt::print("            ended, so nobody vouches for what was sent last\n");
+      sayf("            ended, so nobody vouches for what was sent last\n");
     }
-    fmt::print("            and the certificate in the file agrees; every checksum is right\n");
-    if (found.summary != "complete") fmt::print("            by its certificate: {}\n", escaped(found.summary));
+    sayf("            and the certificate in the file agrees; every checksum is right\n");
+    if (found.summary != "complete") sayf("            by its certificate: {}\n", escaped(found.summary));
   }
   for (const auto* findings : {&found.damage, &found.cuts, &found.missing}) {
-    for (const std::string& text : *findings) fmt::print("            {}\n", escaped(text));
+    for (const std::string& text : *findings) sayf("            {}\n", escaped(text));
   }
-  for (const std::string& text : found.log_times.findings()) fmt::print("note        {}\n", text);
-  fmt::print("messages    {} in {} streams\n", found.messages, found.ledger.streams().size());
-  fmt::print("size        {:.2f} MB\n", static_cast<double>(found.bytes) * 1e-6);
+  for (const std::string& text : found.log_times.findings()) sayf("note        {}\n", text);
+  sayf("messages    {} in {} streams\n", found.messages, found.ledger.streams().size());
+  sayf("size        {:.2f} MB\n", static_cast<double>(found.bytes) * 1e-6);
 }
 
 nlohmann::ordered_json toJson(const Verification& found) {
@@ -70,7 +70,7 @@ ExitCode verify(const VerifyRequest& request) {
   });
   line.clear();
   if (request.json) {
-    std::puts(toText(toJson(found)).c_str());
+    sayText(toText(toJson(found)) + '\n');
   } else {
     printText(found);
   }

@@ -9,7 +9,6 @@
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <deque>
 #include <memory>
 
@@ -85,7 +84,7 @@ class Batch {
       tick();
       executor_.run();
     }
-    if (is_terminal_) std::fprintf(stderr, "\r\033[K");
+    line_.clear();
     if (was_interrupted_) throw Error(ExitCode::kInterrupted, "interrupted; what is recorded is used the next time");
     std::vector<BatchRun> runs;
     runs.reserve(jobs_.size());
@@ -160,7 +159,7 @@ class Batch {
     timer_.expires_after(std::chrono::milliseconds(200));
     timer_.async_wait([this](const boost::system::error_code& error) {
       if (error || running_ == 0) return;
-      if (is_terminal_) std::fprintf(stderr, "\r\033[K%s", progress().c_str());
+      line_.show(progress());
       tick();
     });
   }
@@ -194,7 +193,7 @@ class Batch {
   double done_ = 0.0;
   double total_ = 0.0;
   bool was_interrupted_ = false;
-  bool is_terminal_ = isatty(STDERR_FILENO) != 0;
+  ProgressLine line_;
 };
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <csignal>
-#include <cstdio>
 #include <cstring>
 #include <thread>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "runtime/cell.hpp"
 #include "runtime/log.hpp"
 #include "runtime/recording_parts.hpp"
+#include "runtime/say.hpp"
 #include "runtime/signals.hpp"
 #include "traffic/options.hpp"
 
@@ -69,9 +69,10 @@ ReadingRules TrafficRecorder::rules() {
   rules.selection = options_.selection;
   rules.is_wanted = [this, read = readPartitions(options_.partitions)](const dds::DiscoveredWriter& writer) {
     if (!isInPartitions(writer.partitions, read)) return false;
-    if (!hasControlCharacters(writer.topic) && !hasControlCharacters(writer.type)) return true;
-    topics_.refuse("a writer of " + dds::toString(writer.guid) +
-                   " is not recorded: control characters in the name of its topic or type");
+    if (isPlain(writer.topic) && isPlain(writer.type)) return true;
+    topics_.refuse(
+        "a writer of " + dds::toString(writer.guid) +
+        " is not recorded: control characters in the name of its topic or type, or bytes that are not UTF-8");
     return false;
   };
   rules.on_unreadable = [](const std::string& text) { spdlog::error("{}", text); };
@@ -98,7 +99,7 @@ void TrafficRecorder::awaitSignal() {
   signals_.async_wait([this](const boost::system::error_code& error, int signal) {
     if (error) return;
     if (std::exchange(is_ending_, true)) {
-      std::fputs("the file is being finished; kill -9 would leave it without its index\n", stderr);
+      say(stderr, "the file is being finished; kill -9 would leave it without its index\n");
     }
     session_.end(TrafficEnd::kSignal, "ended by " + nameOf(signal));
     awaitSignal();
@@ -121,7 +122,7 @@ ExitCode recordTraffic(int argc, const char* const* argv) {
   TrafficRecorder recorder(options);
   held.release();
   const TrafficResult result = recorder.run();
-  std::puts((options.json ? jsonOf(result, options) : textOf(result, options)).c_str());
+  sayText((options.json ? jsonOf(result, options) : textOf(result, options)) + '\n');
   return exitCodeOf(result, options);
 }
 

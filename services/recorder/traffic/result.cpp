@@ -24,14 +24,14 @@ std::string placeOf(const TrafficOptions& options) {
 std::string tableOf(const std::vector<TrafficResult::Topic>& topics) {
   std::size_t name_width = 5, type_width = 4;
   for (const TrafficResult::Topic& topic : topics) {
-    name_width = std::max(name_width, printable(topic.name).size());
-    type_width = std::max(type_width, printable(topic.type).size());
+    name_width = std::max(name_width, escaped(topic.name).size());
+    type_width = std::max(type_width, escaped(topic.type).size());
   }
   std::string text = fmt::format("\n{:<{}}  {:<{}}  {:>9}  {:>6}  {:>7}", "topic", name_width, "type", type_width,
                                  "messages", "lost", "writers");
   for (const TrafficResult::Topic& topic : topics) {
-    text += fmt::format("\n{:<{}}  {:<{}}  {:>9}  {:>6}  {:>7}", printable(topic.name), name_width,
-                        printable(topic.type), type_width, topic.messages, topic.lost, topic.writers);
+    text += fmt::format("\n{:<{}}  {:<{}}  {:>9}  {:>6}  {:>7}", escaped(topic.name), name_width, escaped(topic.type),
+                        type_width, topic.messages, topic.lost, topic.writers);
   }
   return text;
 }
@@ -51,7 +51,7 @@ std::string textOf(const TrafficResult& result, const TrafficOptions& options) {
   text += fmt::format("size        {:.2f} MB", static_cast<double>(result.bytes) * 1e-6);
   constexpr std::size_t kMostProblems = 20;
   for (std::size_t i = 0; i < std::min(result.problems.size(), kMostProblems); ++i) {
-    text += fmt::format("\nproblem     {}", printable(result.problems[i]));
+    text += fmt::format("\nproblem     {}", escaped(result.problems[i]));
   }
   if (result.problems.size() > kMostProblems) {
     text += fmt::format("\nproblem     {} more, see --json", result.problems.size() - kMostProblems);

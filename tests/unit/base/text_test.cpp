@@ -5,11 +5,15 @@
 namespace baton {
 namespace {
 
-TEST(Text, IsShownOnOneLineWithoutControlCharacters) {
-  EXPECT_EQ(printable("plain, ümlaut"), "plain, ümlaut");
-  EXPECT_EQ(printable("a\x1b[31m\a\nb\x7f"), "a [31m  b ");
-  EXPECT_FALSE(hasControlCharacters("plain, ümlaut"));
-  for (const char* text : {"\n", "a\tb", "\x1b", "a\x7f"}) EXPECT_TRUE(hasControlCharacters(text));
+TEST(Text, IsPlainWithoutControlCharacters) {
+  EXPECT_TRUE(isPlain("plain, \u00fcmlaut"));
+  for (const char* text : {"\n", "a\tb", "\x1b", "a\x7f", "\xc2\x85", "\xc2\x9b", "\x9b", "\xfcmlaut"}) {
+    EXPECT_FALSE(isPlain(text)) << escaped(text);
+  }
+}
+
+TEST(Text, InJsonIsEscapedAsJsonDoes) {
+  EXPECT_EQ(escapedInJson("\"\u00fc\xc2\xa0\x7f\xc2\x80\xc2\x9b\xc2\""), "\"\u00fc\xc2\xa0\\u007f\\u0080\\u009b\xc2\"");
 }
 
 TEST(Text, IsEscapedSoThatItChangesNoTerminalAndNoLine) {
@@ -28,7 +32,7 @@ TEST(Text, AFileNameLeadsToNoOtherFolder) {
   EXPECT_TRUE(isFileName("a.mcap", ".mcap"));
   EXPECT_TRUE(isFileName("demo step 3.mcap", ".mcap"));
   for (const char* name : {"", ".mcap", "a", "a.mcap2", "/a.mcap", "b/a.mcap", "../a.mcap", ".a.mcap", "..", "a\n.mcap",
-                           "/root/.ssh/authorized_keys", "a.mcap/"}) {
+                           "a\xc2\x9b.mcap", "/root/.ssh/authorized_keys", "a.mcap/"}) {
     EXPECT_FALSE(isFileName(name, ".mcap")) << name;
   }
 }

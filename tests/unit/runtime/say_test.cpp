@@ -1,0 +1,53 @@
+/// What programs print changes no terminal, whatever others are called.
+#include "runtime/say.hpp"
+
+#include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
+
+#include "runtime/json.hpp"
+#include "runtime/log.hpp"
+
+namespace baton {
+namespace {
+
+const std::string kHostile =
+    "a\xc2\x9b"
+    "2J\x1b[2J\x9b\x07";
+const std::string kShown = "a\\u009b2J\\x1b[2J\\x9b\\x07";
+
+TEST(Say, ShowsWhatATerminalWouldObey) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  say("%s: %d\n", kHostile.c_str(), 3);
+  sayf("{}: {:>3}\n", kHostile, 4);
+  sayText(kHostile + "\n");
+  say(stderr, "%s\n", kHostile.c_str());
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), kShown + ": 3\n" + kShown + ":   4\n" + kShown + "\n");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), kShown + "\n");
+}
+
+TEST(Say, ALogDoesTheSame) {
+  const auto before = spdlog::default_logger();
+  testing::internal::CaptureStderr();
+  setUpLog("test");
+  spdlog::warn("{}", kHostile);
+  spdlog::default_logger()->flush();
+  const std::string log = testing::internal::GetCapturedStderr();
+  spdlog::set_default_logger(before);
+  EXPECT_NE(log.find(" warning test: " + kShown + "\n"), std::string::npos) << log;
+}
+
+TEST(Say, JsonIsPrintedAsItIs) {
+  const nlohmann::ordered_json json{{"name", kHostile + "\x7f \u00fc"}};
+  const std::string text = toText(json);
+  EXPECT_EQ(text.find_first_of("\x7f\x1b\x07\x9b"), std::string::npos) << text;
+  testing::internal::CaptureStdout();
+  sayText(text);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), text);
+  EXPECT_EQ(nlohmann::json::parse(text).at("name"),
+            "a\xc2\x9b"
+            "2J\x1b[2J\xef\xbf\xbd\x07\x7f \u00fc");
+}
+
+}  // namespace
+}  // namespace baton
