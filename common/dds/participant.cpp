@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -13,6 +12,7 @@
 #include <tuple>
 
 #include "base/error.hpp"
+#include "base/number.hpp"
 #include "base/text.hpp"
 #include "dds/environment.hpp"
 #include "dds/fastdds.hpp"
@@ -63,12 +63,11 @@ std::optional<Peer> decodePeer(const std::string& text, const GuidPrefix& prefix
 std::uint64_t loseOneIn() {
   const char* text = std::getenv("BATON_LOSE_ONE_IN");
   if (text == nullptr) return 0;
-  std::uint64_t one_in = 0;
-  const auto [end, error] = std::from_chars(text, text + std::strlen(text), one_in);
-  if (error != std::errc() || *end != '\0' || one_in < 2) {
+  const auto one_in = numberIn<std::uint64_t>(text);
+  if (!one_in || *one_in < 2) {
     throw UsageError(std::string("BATON_LOSE_ONE_IN: expected a whole number from 2, found ") + text);
   }
-  return one_in;
+  return *one_in;
 }
 
 std::shared_ptr<transport::TransportDescriptorInterface> udpOn(const std::vector<std::string>& addresses) {

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "base/number.hpp"
 #include "control/nearest_name.hpp"
 #include "time/pacer.hpp"
 
@@ -17,12 +16,8 @@ namespace baton {
 
 namespace {
 
-/// The whole text as a number of that type.
-template <class Number>
-std::optional<Number> numberIn(const std::string& text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+std::string refusal(const std::string& expected, const std::string& text) {
+  return "expected " + expected + ", found '" + text + "'" + commaHint(text);
 }
 
 /// CLI11 takes -1 for a large unsigned number, and nan and inf for numbers.
@@ -32,14 +27,13 @@ void guardNumbers(CLI::App& app) {
     if (type.starts_with("UINT")) {
       option->check(CLI::Validator(
           [](const std::string& text) -> std::string {
-            return numberIn<std::uint64_t>(text) ? "" : "expected a whole number from 0 on, found '" + text + "'";
+            return numberIn<std::uint64_t>(text) ? "" : refusal("a whole number from 0 on", text);
           },
           ""));
     } else if (type.starts_with("FLOAT")) {
       option->check(CLI::Validator(
           [](const std::string& text) -> std::string {
-            const auto number = numberIn<double>(text);
-            return number && std::isfinite(*number) ? "" : "expected a finite number, found '" + text + "'";
+            return numberIn<double>(text) ? "" : refusal("a finite number", text);
           },
           ""));
     }
@@ -144,17 +138,14 @@ CLI::Option* addClock(CLI::App& app, dds::WallClock& clock) {
 double parseRate(const std::string& what, const std::string& text) {
   if (text == "max") return 0.0;
   const auto rate = numberIn<double>(text);
-  if (!rate || !std::isfinite(*rate) || *rate < kMinRate) {
-    throw UsageError(what + ": expected a number from 1e-7 on, or max, found '" + text + "'");
-  }
+  if (!rate || *rate < kMinRate) throw UsageError(what + ": " + refusal("a number from 1e-7 on, or max", text));
   return *rate;
 }
 
 CLI::Validator notNegative() {
   return {[](const std::string& text) -> std::string {
             const auto number = numberIn<double>(text);
-            const bool is_right = number && std::isfinite(*number) && *number >= 0.0;
-            return is_right ? "" : "expected a number that is not below 0, found '" + text + "'";
+            return number && *number >= 0.0 ? "" : refusal("a number that is not below 0", text);
           },
           "NONNEGATIVE"};
 }
@@ -162,7 +153,7 @@ CLI::Validator notNegative() {
 CLI::Validator atLeastOne() {
   return {[](const std::string& text) -> std::string {
             const auto number = numberIn<std::uint64_t>(text);
-            return number && *number > 0 ? "" : "expected a whole number from 1 on, found '" + text + "'";
+            return number && *number > 0 ? "" : refusal("a whole number from 1 on", text);
           },
           "COUNT"};
 }
@@ -171,7 +162,7 @@ CLI::Validator wholeBetween(std::int64_t low, std::int64_t high) {
   return {[=](const std::string& text) -> std::string {
             const auto number = numberIn<std::int64_t>(text);
             const bool is_right = number && *number >= low && *number <= high;
-            return is_right ? "" : fmt::format("expected a whole number from {} to {}, found '{}'", low, high, text);
+            return is_right ? "" : refusal(fmt::format("a whole number from {} to {}", low, high), text);
           },
           fmt::format("{} to {}", low, high)};
 }
@@ -180,7 +171,7 @@ CLI::Validator between(double low, double high) {
   return {[=](const std::string& text) -> std::string {
             const auto number = numberIn<double>(text);
             const bool is_right = number && *number >= low && *number <= high;
-            return is_right ? "" : fmt::format("expected a number from {:g} to {:g}, found '{}'", low, high, text);
+            return is_right ? "" : refusal(fmt::format("a number from {:g} to {:g}", low, high), text);
           },
           fmt::format("{:g} to {:g}", low, high)};
 }

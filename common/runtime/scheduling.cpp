@@ -4,12 +4,12 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <sstream>
 #include <tuple>
 
 #include "base/error.hpp"
+#include "base/number.hpp"
 
 namespace baton {
 
@@ -18,13 +18,12 @@ std::vector<int> parseCpus(const std::string& text) {
   std::vector<int> cpus;
   std::istringstream stream(text);
   for (std::string part; std::getline(stream, part, ',');) {
-    int cpu = -1;
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), cpu);
-    if (error != std::errc() || end != part.data() + part.size() || cpu < 0 || cpu >= count) {
+    const auto cpu = numberIn<int>(part);
+    if (!cpu || *cpu < 0 || *cpu >= count) {
       throw UsageError("cores: expected numbers from 0 to " + std::to_string(count - 1) + " with commas, found " +
                        text);
     }
-    cpus.push_back(cpu);
+    cpus.push_back(*cpu);
   }
   if (cpus.empty()) throw UsageError("cores: expected at least one");
   return cpus;

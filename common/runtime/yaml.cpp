@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +12,7 @@
 #include <string_view>
 
 #include "base/error.hpp"
+#include "base/number.hpp"
 #include "base/text.hpp"
 #include "control/nearest_name.hpp"
 
@@ -33,13 +33,6 @@ std::string counted(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-std::optional<double> parseDecimal(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_whole_text = error == std::errc() && end == text.data() + text.size();
-  return is_whole_text && std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
 /// A decimal number, or [sign][a*]pi[/b], which is (a pi)/b.
 std::optional<double> parseNumber(const std::string& scalar) {
   std::string text = scalar;
@@ -49,16 +42,15 @@ std::optional<double> parseNumber(const std::string& scalar) {
   const bool has_sign = !text.empty() && (text[0] == '+' || text[0] == '-');
   const double sign = has_sign && text[0] == '-' ? -1.0 : 1.0;
   const std::string_view unsigned_text = std::string_view(text).substr(has_sign ? 1 : 0);
-  if (unsigned_text.empty() || unsigned_text[0] == '-') return std::nullopt;
-  if (pi == std::string::npos) {
-    const auto value = has_blanks ? std::nullopt : parseDecimal(unsigned_text);
-    return value ? std::optional(sign * *value) : std::nullopt;
-  }
+  if (pi == std::string::npos) return has_blanks ? std::nullopt : numberIn<double>(text);
+  const auto parseDecimal = [](std::string_view one) {
+    return one.starts_with('+') || one.starts_with('-') ? std::nullopt : numberIn<double>(one);
+  };
 
   const std::string_view before = unsigned_text.substr(0, pi - (has_sign ? 1 : 0));
   const std::string_view after = std::string_view(text).substr(pi + 2);
   if (!before.empty() && before.back() != '*') return std::nullopt;
-  if (!after.empty() && (after.front() != '/' || after.substr(1).starts_with('-'))) return std::nullopt;
+  if (!after.empty() && after.front() != '/') return std::nullopt;
   const auto a = before.empty() ? 1.0 : parseDecimal(before.substr(0, before.size() - 1));
   const auto b = after.empty() ? 1.0 : parseDecimal(after.substr(1));
   if (!a || !b) return std::nullopt;
@@ -256,7 +248,7 @@ void YamlNode::refuse(const std::string& expected) const { fail("expected " + ex
 std::string YamlNode::found() const {
   switch (element_->kind) {
     case Element::Kind::kNull: return "nothing";
-    case Element::Kind::kScalar: return quoted(element_->scalar);
+    case Element::Kind::kScalar: return quoted(element_->scalar) + commaHint(element_->scalar);
     case Element::Kind::kList: return "a list of " + counted(element_->children.size(), "value");
     case Element::Kind::kMap: return "a map with " + counted(element_->keys.size(), "key");
   }
@@ -283,11 +275,9 @@ double YamlNode::number(const NumberRange& range) const {
 std::int64_t YamlNode::integer(std::int64_t minimum, std::int64_t maximum) const {
   const std::string expected = "a whole number from " + std::to_string(minimum) + " to " + std::to_string(maximum);
   const std::string& text = plainScalar(expected);
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool is_whole_text = error == std::errc() && end == text.data() + text.size();
-  if (!is_whole_text || value < minimum || value > maximum) refuse(expected);
-  return value;
+  const auto value = numberIn<std::int64_t>(text);
+  if (!value || *value < minimum || *value > maximum) refuse(expected);
+  return *value;
 }
 
 bool YamlNode::boolean() const {
@@ -324,6 +314,8 @@ std::size_t YamlNode::indexOfWord(const std::vector<std::string>& words) const {
 
 std::vector<double> YamlNode::numbers(std::size_t size, const NumberRange& range, const std::string& each) const {
   const std::string expected = "a list of " + counted(size, "number") + (each.empty() ? "" : ", one per " + each);
+  const bool is_twice = isList() && element_->children.size() == 2 * size;  // as [0,5, 0,1] is
+  if (is_twice) refuse(expected + " whose decimal sign is a point");
   if (!isList() || element_->children.size() != size) refuse(expected);
   std::vector<double> values;
   for (const YamlNode& item : list(size, size)) values.push_back(item.number(range));

@@ -2,9 +2,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -39,17 +41,23 @@ struct ModelReport {
   JointVector tau_lagrange;
 };
 
-/// The numbers of an option, written as in the files: "pi/6" is one. All zero when the option was not given.
+/// The numbers of an option, written as in the files: "pi/6" is one; each a word of its own, or all one word with
+/// commas. All zero when the option was not given.
 Eigen::VectorXd parseNumbers(const std::string& option, const std::vector<std::string>& words, int size,
                              const std::string& each) {
   if (words.empty()) return Eigen::VectorXd::Zero(size);
   const auto count = static_cast<std::size_t>(size);
-  if (words.size() != count) {
-    throw UsageError(fmt::format("{}: expected {} numbers, one per {}, found {}", option, size, each, words.size()));
+  const auto commasOf = [](const std::string& word) { return std::ranges::count(word, ','); };
+  const auto commas = std::ranges::max(words | std::views::transform(commasOf));
+  const std::size_t found = words.size() > 1 ? words.size() : static_cast<std::size_t>(commas) + 1;
+  if (found != count || (words.size() > 1 && commas > 0)) {
+    throw UsageError(fmt::format(
+        "{}: expected {} numbers, one per {}, with spaces or with commas between them, found "
+        "{}: {}{}",
+        option, size, each, found, fmt::join(words, " "), commas > 0 ? "; the decimal sign is a point" : ""));
   }
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "[" : ", ") + word;
-  const std::vector<double> values = YamlNode::parse(option, list + "]").numbers(count, {}, each);
+  const std::string list = fmt::format("[{}]", fmt::join(words, ", "));
+  const std::vector<double> values = YamlNode::parse(option, list).numbers(count, {}, each);
   return Eigen::Map<const Eigen::VectorXd>(values.data(), size);
 }
 
@@ -181,7 +189,7 @@ void addModelCommand(CLI::App& app, ExitCode& /*exit_code*/) {
       "analytical Jacobian, 6 x n, J_A null where the ZYZ angles are singular; B, C, g: by Lagrange; friction;\n"
       "tau_newton_euler, tau_lagrange: tau by either road; tau_difference: the first minus the second.");
   const auto add = [&](const std::string& name, std::vector<std::string>& words, const std::string& help) {
-    return command->add_option(name, words, help)->delimiter(',');
+    return command->add_option(name, words, help);
   };
   command->add_option("--robot", request->robot, "robot file, or the name of one that comes with Baton")->required();
   add("--q", request->q, "joint positions, one per joint [rad or m]")->required();

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/number.hpp"
 #include "runtime/yaml.hpp"
 
 namespace baton {
@@ -17,6 +18,7 @@ ParameterValue readValue(const YamlNode& node) {
   try {
     return std::vector<double>{node.number()};
   } catch (const UsageError&) {
+    if (!commaHint(node.text()).empty()) throw;
     return node.text();
   }
 }

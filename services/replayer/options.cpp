@@ -1,9 +1,9 @@
 #include "options.hpp"
 
-#include <charconv>
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/number.hpp"
 #include "base/text.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/paths.hpp"
@@ -14,13 +14,12 @@ namespace {
 /// The value behind --loop; none stands for passes without end.
 std::uint32_t parsePasses(const std::string& text) {
   if (text.empty()) return 0;
-  std::uint32_t passes = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), passes);
-  if (error != std::errc() || end != text.data() + text.size() || passes == 0) {
+  const auto passes = numberIn<std::uint32_t>(text);
+  if (!passes || *passes == 0) {
     throw UsageError("--loop: expected a number of passes above 0, or nothing, found '" + text +
                      "'; a recording goes before --loop");
   }
-  return passes;
+  return *passes;
 }
 
 std::map<std::string, std::string> parseRemap(const std::vector<std::string>& pairs) {

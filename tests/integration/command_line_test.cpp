@@ -189,6 +189,20 @@ TEST(CommandLine, ModelPrintsTheReportsDigits) {
   EXPECT_NE(text.find("0.9629"), std::string::npos) << text;
 }
 
+TEST(CommandLine, ModelTakesNumbersWithOneKindOfSeparator) {
+  const Bench bench;
+  EXPECT_EQ(bench.baton({"model", "--robot", "rpp", "--q=-pi/6,+0.2,0.1"}).exit_code, 0);
+  EXPECT_EQ(bench.baton({"model", "--robot", "rpp", "--q", "pi/6", "+0.2", "0.1"}).exit_code, 0);
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"0,5"}, {"0", "0,5", "1"}, {"0,5", "1"}}) {
+    std::vector<std::string> arguments{"model", "--robot", "rpp", "--q"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    const Finished refused = bench.baton(arguments);
+    EXPECT_EQ(refused.exit_code, 2) << refused.out;
+    EXPECT_NE(refused.err.find("--q: expected 3 numbers, one per joint"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("; the decimal sign is a point"), std::string::npos) << refused.err;
+  }
+}
+
 TEST(CommandLine, AsManyStepsAsCanBeAskedForAreWaitedFor) {
   Bench bench;
   const LiveRun run(bench, endlessContact(), {"--paused"});

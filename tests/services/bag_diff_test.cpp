@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 
+#include "bag/field_rules.hpp"
 #include "bag/recording_diff.hpp"
 #include "base/error.hpp"
 #include "schema/idl_parser.hpp"
@@ -290,6 +291,21 @@ TEST_F(BagDiff, TolerancesHoldForTheFieldTheyName) {
   EXPECT_FALSE(diff(a, b, {.tolerances = {"1", "effort=0.1"}}).isSame());
   EXPECT_TRUE(diff(a, b, {.tolerances = {"joint_command.effort=0.3", "effort=0.1"}}).isSame());
   EXPECT_FALSE(diff(a, b, {.tolerances = {"step=5"}}).isSame());
+  EXPECT_TRUE(diff(a, b, {.tolerances = {"+0.25"}}).isSame());
+  EXPECT_FALSE(diff(a, b, {.tolerances = {"1,effort=0.1"}}).isSame());
+  EXPECT_TRUE(diff(a, b, {.tolerances = {"step=1e-9,0.3"}}).isSame());
+}
+
+TEST_F(BagDiff, ADecimalCommaIsNoListOfTolerances) {
+  for (const char* list : {"0,5", "effort=0,5", "effort=1e-9,step=0,5", "effort=0,5e-3"}) {
+    try {
+      (void)RuleSet({}, {list});
+      ADD_FAILURE() << list;
+    } catch (const UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find("; the decimal sign is a point: 0.5"), std::string::npos)
+          << error.what();
+    }
+  }
 }
 
 TEST_F(BagDiff, RefusesRulesThatAreAboutNothing) {

@@ -153,10 +153,8 @@ void addBagDiff(CLI::App& bag, ExitCode& exit_code) {
   addParts(*command, wish->with_parts);
   command->add_option("--topics", request->topics, "only these topics: a,b,c")->delimiter(',')->allow_extra_args(false);
   command->add_option("--ignore", request->ignored, "topics, topic.field or field, not to compare")->delimiter(',');
-  command
-      ->add_option("--tolerance", request->tolerances,
-                   "how far numbers may be apart, in their unit: everywhere, or as field=1e-9, topic.field=1e-9")
-      ->delimiter(',');
+  command->add_option("--tolerance", request->tolerances,
+                      "how far numbers may be apart, in their unit: everywhere, or as field=1e-9,topic.field=1e-9");
   command->add_option("--from-step", request->from_step, "of messages that have a step only those from this one on");
   command->add_option("--to-step", request->to_step, "and up to this one");
   command->add_flag("--all-takes", request->all_takes, "the takes before a reset too");

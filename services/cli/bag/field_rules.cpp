@@ -1,10 +1,9 @@
 #include "bag/field_rules.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 #include "base/error.hpp"
+#include "base/number.hpp"
 
 namespace baton {
 namespace {
@@ -37,6 +36,26 @@ std::optional<std::string> fieldFor(const std::string& rule, const std::string& 
   return hasField(*type, rule) ? std::optional(rule) : std::nullopt;
 }
 
+std::string numberOf(const std::string& tolerance) { return tolerance.substr(tolerance.find('=') + 1); }
+
+/// Appends what stands between the commas. Two that together are a number with a decimal comma are refused: read one by
+/// one, 0,5 would let everything be 5 apart.
+void splitList(const std::string& list, std::vector<std::string>& each) {
+  std::string before;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    each.push_back(list.substr(begin, end - begin));
+    if (begin > 0) {
+      const std::string both = numberOf(before) + "," + each.back();
+      if (const std::string hint = commaHint(both); !hint.empty()) {
+        throw UsageError("--tolerance: expected a distance, or several of fields, found '" + list + "'" + hint);
+      }
+    }
+    before = each.back();
+    begin = end + 1;
+  }
+}
+
 }  // namespace
 
 bool FieldRules::ignores(const std::string& path) const {
@@ -66,16 +85,16 @@ bool hasField(const schema::Type& type, const std::string& field) {
 
 RuleSet::RuleSet(std::vector<std::string> ignored, const std::vector<std::string>& tolerances) {
   for (std::string& name : ignored) ignored_.push_back({.name = std::move(name)});
-  for (const std::string& text : tolerances) {
+  std::vector<std::string> each;
+  for (const std::string& list : tolerances) splitList(list, each);
+  for (const std::string& text : each) {
     const std::size_t equals = text.find('=');
     const std::string number = equals == std::string::npos ? text : text.substr(equals + 1);
-    double distance = 0.0;
-    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), distance);
-    const bool is_number = error == std::errc() && end == number.data() + number.size();
-    if (!is_number || !std::isfinite(distance) || distance < 0.0 || equals == 0) {
+    const auto distance = numberIn<double>(number);
+    if (!distance || *distance < 0.0 || equals == 0) {
       throw UsageError("--tolerance: expected a distance of 0 or more, or field=distance, found '" + text + "'");
     }
-    tolerances_.push_back({.name = equals == std::string::npos ? "" : text.substr(0, equals), .distance = distance});
+    tolerances_.push_back({.name = equals == std::string::npos ? "" : text.substr(0, equals), .distance = *distance});
   }
 }
 

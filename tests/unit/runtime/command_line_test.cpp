@@ -41,11 +41,15 @@ TEST(CommandLine, TakesNumbers) {
   EXPECT_EQ(numbers.whole, UINT64_MAX);
   EXPECT_EQ(numbers.maybe, 0U);
   EXPECT_EQ(numbers.real, -1500.0);
+  EXPECT_TRUE(numbers.parse({"--whole", "+3", "--real", "+0.5", "--maybe", "+1"}));
+  EXPECT_EQ(numbers.whole, 3U);
+  EXPECT_EQ(numbers.maybe, 1U);
+  EXPECT_EQ(numbers.real, 0.5);
 }
 
 TEST(CommandLine, RefusesWhatIsNoWholeNumber) {
   for (const char* option : {"--whole", "--maybe", "--called"}) {
-    for (const char* word : {"-1", "18446744073709551616", "1.5", "1e3", "nan", "", " 1", "0x10", "1x"}) {
+    for (const char* word : {"-1", "18446744073709551616", "1.5", "1,5", "++1", "1e3", "nan", "", " 1", "0x10", "1x"}) {
       Numbers numbers;
       EXPECT_FALSE(numbers.parse({option, word})) << option << " '" << word << "'";
       EXPECT_EQ(numbers.whole, 7U) << option << " '" << word << "'";
@@ -55,7 +59,7 @@ TEST(CommandLine, RefusesWhatIsNoWholeNumber) {
 
 TEST(CommandLine, RefusesWhatIsNoFiniteNumber) {
   for (const char* option : {"--real", "--maybe-real"}) {
-    for (const char* word : {"nan", "-nan", "inf", "-inf", "1e999", "", "1x"}) {
+    for (const char* word : {"nan", "-nan", "inf", "-inf", "1e999", "", "1x", "0,5", "+-1"}) {
       Numbers numbers;
       EXPECT_FALSE(numbers.parse({option, word})) << option << " '" << word << "'";
       EXPECT_EQ(numbers.real, 7.0);
@@ -111,8 +115,14 @@ TEST(CommandLine, ANumberOutOfRangeIsToldTheRange) {
   EXPECT_EQ(refusalOf({"swap", "--blend", "1e4"}), "");
 }
 
+TEST(CommandLine, ANumberWithACommaIsToldOfThePoint) {
+  EXPECT_NE(refusalOf({"swap", "--blend", "0,5"}).find("found '0,5'; the decimal sign is a point: 0.5; see"),
+            std::string::npos);
+}
+
 TEST(CommandLine, ARateIsOneThatCanBeSeen) {
   EXPECT_EQ(parseRate("rate", "max"), 0.0);
+  EXPECT_EQ(parseRate("rate", "+2"), 2.0);
   EXPECT_EQ(parseRate("rate", "0.5"), 0.5);
   for (const char* word : {"0", "-1", "nan", "inf", "1e-300", "", "1x"}) {
     EXPECT_THROW((void)parseRate("rate", word), UsageError) << word;

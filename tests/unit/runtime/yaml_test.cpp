@@ -47,10 +47,10 @@ TEST_P(NotANumber, IsRefusedWithFileLineAndWhatWasFound) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scalars, NotANumber,
-                         testing::Values("nan", ".nan", "NaN", "inf", "-inf", ".inf", "1e999", "heavy", "1 2", "1,5",
-                                         "0x10", "--1", "+-1", "1/3", "3pi", "pi*2", "pi/0", "pi/-2", "-2*-pi", "pi/",
-                                         "pipi", "2**pi", "nan*pi", "pi/inf", "'3'", "[1]", "{a: 1}", "", "~", "true",
-                                         "+"));
+                         testing::Values("nan", ".nan", "NaN", "inf", "-inf", ".inf", "++1", "1e999", "heavy", "1 2",
+                                         "1,5", "0x10", "--1", "+-1", "1/3", "3pi", "pi*2", "pi/0", "pi/-2", "-2*-pi",
+                                         "pi/", "pipi", "2**pi", "nan*pi", "pi/inf", "'3'", "[1]", "{a: 1}", "", "~",
+                                         "true", "+"));
 
 TEST(YamlNumber, KeepsToItsRangeAndSaysTheUnit) {
   const NumberRange mass{0.0, 10.0, "kg"};
@@ -65,8 +65,14 @@ TEST(YamlNumber, KeepsToItsRangeAndSaysTheUnit) {
             "a.yaml:1: x: expected a number above 0 and up to 10 kg, found '0'");
 }
 
+TEST(YamlNumber, WithACommaIsToldOfThePoint) {
+  EXPECT_EQ(refusal([] { return scalar("0,5").number(); }),
+            "a.yaml:1: x: expected a number, found '0,5'; the decimal sign is a point: 0.5");
+}
+
 TEST(YamlInteger, ReadsWholeNumbersInRangeOnly) {
   EXPECT_EQ(scalar("-4").integer(-4, 4), -4);
+  EXPECT_EQ(scalar("+4").integer(-4, 4), 4);
   for (const char* bad : {"5", "1.0", "1e0", "one", "99999999999999999999", "'1'", ""}) {
     const std::string message = refusal([&] { return scalar(bad).integer(0, 4); });
     EXPECT_EQ(message.rfind("a.yaml:1: x: expected a whole number from 0 to 4, found ", 0), 0u) << message;
@@ -114,6 +120,8 @@ TEST(YamlNumbers, HaveTheSizeAskedFor) {
   EXPECT_EQ(scalar("[1, 2, 3]").vector3({}), Vector3(1.0, 2.0, 3.0));
   EXPECT_EQ(refusal([] { return scalar("[1, 2]").numbers(3, {}, "joint"); }),
             "a.yaml:1: x: expected a list of 3 numbers, one per joint, found a list of 2 values");
+  EXPECT_EQ(refusal([] { return scalar("[0,5, 0,1]").numbers(2); }),
+            "a.yaml:1: x: expected a list of 2 numbers whose decimal sign is a point, found a list of 4 values");
   EXPECT_EQ(refusal([] { return scalar("7").numbers(1); }), "a.yaml:1: x: expected a list of 1 number, found '7'");
   EXPECT_EQ(refusal([] { return parse("x:\n  - 1\n  - a\n").map({"x"})["x"].numbers(2); }),
             "a.yaml:3: x[1]: expected a number, found 'a'");
