@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <utility>
 
 #include "base/error.hpp"
@@ -69,8 +68,12 @@ struct flock wholeFile() {
 
 /// Whether somebody holds the lock on this file.
 bool isHeld(const fs::path& file) {
-  const int descriptor = open(file.c_str(), O_RDWR | O_CLOEXEC);
-  if (descriptor < 0) return false;
+  const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0 && errno == ENOENT) return false;
+  if (descriptor < 0) {
+    throw UnavailableError("whether a run is on cannot be seen: cannot open " + file.string() + ": " +
+                           std::strerror(errno));
+  }
   struct flock lock = wholeFile();
   const bool is_held = fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
   close(descriptor);
@@ -113,9 +116,9 @@ std::optional<RunInfo> activeRun(int domain, const std::string& cell) {
 
 std::vector<RunInfo> activeRuns() {
   std::vector<RunInfo> runs;
-  for (const auto& entry : fs::directory_iterator(cellsFolder())) {
-    if (!isHeld(entry.path())) continue;
-    if (std::optional<RunInfo> info = readInfo(entry.path())) runs.push_back(std::move(*info));
+  for (const fs::path& file : listFolder(cellsFolder())) {
+    if (!isHeld(file)) continue;
+    if (std::optional<RunInfo> info = readInfo(file)) runs.push_back(std::move(*info));
   }
   return runs;
 }
@@ -172,11 +175,7 @@ fs::path signpost(const fs::path& run_folder, const std::string& name) { return 
 void sendElsewhere(const RunInfo& info, const fs::path& path) {
   const fs::path file = signpost(info.folder, path.filename().string());
   makeFolder(file.parent_path());
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << path.parent_path().string();
-  stream.close();
-  if (!stream)
-    throw UnavailableError("cannot write " + file.string() + ": expected space and the right to write there");
+  writeFile(file, path.parent_path().string());
 }
 
 fs::path placeOf(const fs::path& key_file, const fs::path& folder, const std::string& name) {
@@ -189,17 +188,8 @@ std::string keptScenario(const RunInfo& info) { return info.folder + "/scenario.
 std::string keptRobot(const RunInfo& info) { return info.folder + "/robot.yaml"; }
 
 void keepExperiment(const RunInfo& info, const Scenario& scenario) {
-  for (const auto& [file, text] :
-       {std::pair{keptScenario(info), scenario.text}, std::pair{keptRobot(info), scenario.robot_text}}) {
-    const std::string draft = file + ".new";  // whoever reads it meanwhile sees the old one whole
-    std::ofstream stream(draft, std::ios::binary);
-    stream << text;
-    stream.close();
-    std::error_code error;
-    if (stream) fs::rename(draft, file, error);
-    if (!stream || error)
-      throw UnavailableError("cannot write " + file + ": expected space and the right to write there");
-  }
+  writeFile(keptScenario(info), scenario.text);
+  writeFile(keptRobot(info), scenario.robot_text);
 }
 
 fs::path runFolder(const std::string& run) {
@@ -214,12 +204,11 @@ fs::path replayFolder(int domain, const std::string& cell, const std::string& ru
 
 std::set<std::string> replaysOfThisUser(int domain, const std::string& cell) {
   std::set<std::string> names;
-  std::error_code there_is_none;
-  for (const auto& entry : fs::directory_iterator(replayFolder(domain, cell, ""), there_is_none)) {
-    const int folder = open(entry.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  for (const fs::path& path : listFolder(replayFolder(domain, cell, ""))) {
+    const int folder = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder < 0) continue;
     const bool is_held = flock(folder, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-    if (is_held) names.insert(entry.path().filename().string());
+    if (is_held) names.insert(path.filename().string());
     close(folder);
   }
   return names;

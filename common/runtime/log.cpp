@@ -3,6 +3,8 @@
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
+#include <cstring>
 #include <deque>
 #include <fstream>
 #include <memory>
@@ -38,6 +40,7 @@ void setUpLog(const std::string& name) {
 
 std::string lastLines(const std::filesystem::path& log, std::size_t count) {
   std::ifstream stream(log);
+  if (!stream) return "  cannot be read: " + std::string(std::strerror(errno)) + "\n";
   std::deque<std::string> lines;
   for (std::string line; std::getline(stream, line);) {
     lines.push_back(std::move(line));

@@ -4,15 +4,23 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
 #include <chrono>
 #include <climits>
+#include <cstdio>
 #include <cstdlib>
-#include <fstream>
+#include <cstring>
+#include <limits>
+#include <memory>
 #include <random>
-#include <sstream>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "mcap/bytes.hpp"
+#include "mcap/error.hpp"
+#include "mcap/file.hpp"
 
 namespace baton {
 namespace fs = std::filesystem;
@@ -59,9 +67,13 @@ bool isInstalled() {
 
 fs::path siblingProgram(const std::string& name) {
   const fs::path own = programFolder();
+  std::string reason;
   for (const fs::path& folder : {own, own.parent_path() / "libexec/baton"}) {
-    if (fs::path path = folder / name; access(path.c_str(), X_OK) == 0) return path;
+    const fs::path path = folder / name;
+    if (access(path.c_str(), X_OK) == 0) return path;
+    if (errno != ENOENT) reason = path.string() + ": " + std::strerror(errno);
   }
+  if (!reason.empty()) throw UnavailableError("the program cannot be run: " + reason);
   throw UnavailableError("the program " + (own / name).string() + " is missing: build or install Baton again");
 }
 
@@ -75,14 +87,29 @@ fs::path dataFolder() {
 }
 
 namespace {
+constexpr const char* kNothing = "nothing";
+
+/// "a folder", "nothing", or the system's reason; empty for a file.
+std::string whyNoFile(const fs::path& path) {
+  std::error_code error;
+  switch (fs::status(path, error).type()) {
+    case fs::file_type::regular: return "";
+    case fs::file_type::directory: return "a folder";
+    case fs::file_type::not_found: return kNothing;
+    case fs::file_type::none: return "one that cannot be looked at: " + error.message();
+    default: return "a device, a pipe or a socket";
+  }
+}
+
 /// @param kind  "scenario": what is meant, and with an s the folder of those that come with Baton.
 fs::path findNamed(const std::string& kind, const std::string& name) {
-  std::error_code is_none;  // also a name that no file can have
-  if (fs::is_regular_file(name, is_none)) return fs::absolute(name);
+  const std::string found = whyNoFile(name);
+  if (found.empty()) return fs::absolute(name);
   const fs::path folder = dataFolder() / (kind + "s");
+  std::error_code is_none;  // also a name that no file can have
   if (fs::path known = folder / (name + ".yaml"); fs::is_regular_file(known, is_none)) return known;
-  if (fs::is_directory(name, is_none)) {
-    throw UsageError(kind + " " + escaped(name) + ": expected a file, found a folder");
+  if (found != kNothing) {
+    throw UsageError(kind + " " + escaped(name.substr(0, kMaxShown)) + ": expected a file, found " + found);
   }
   std::string names;
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -98,10 +125,14 @@ fs::path findRobot(const std::string& name) { return findNamed("robot", name); }
 
 std::filesystem::path outputPath(const std::string& out) {
   std::filesystem::path path = std::filesystem::absolute(out);
-  std::error_code is_none;  // also a name that no folder can have
-  if (!fs::is_directory(path.parent_path(), is_none)) {
+  std::error_code error;
+  if (!fs::is_directory(path.parent_path(), error)) {
+    const std::string found = whyNoFile(path.parent_path());
     throw UsageError("--out " + escaped(out.substr(0, kMaxShown)) + ": expected a file in an existing folder, and " +
-                     escaped(path.parent_path().string().substr(0, kMaxShown)) + " is none");
+                     escaped(path.parent_path().string().substr(0, kMaxShown)) + " is " +
+                     (found == kNothing ? "none"
+                      : found.empty()   ? "a file"
+                                        : found));
   }
   if (path.filename().string().size() > NAME_MAX) {
     throw UsageError("--out " + escaped(out.substr(0, kMaxShown)) + ": expected a name of at most " +
@@ -117,10 +148,45 @@ std::string newRunId() {
 }
 
 std::string readFile(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) throw UnavailableError("cannot read " + path.string());
-  return text.str();
+  int error = 0;
+  std::string text = readFile(path, std::numeric_limits<std::size_t>::max(), error);
+  if (error != 0) throw UnavailableError("cannot read " + path.string() + ": " + std::strerror(error));
+  return text;
+}
+
+std::string readFile(const fs::path& path, std::size_t most_bytes, int& error) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"), &std::fclose);
+  error = file ? 0 : errno;
+  std::string text;
+  std::array<char, 1U << 14> buffer{};
+  while (error == 0 && text.size() < most_bytes) {
+    const std::size_t got = std::fread(buffer.data(), 1, std::min(buffer.size(), most_bytes - text.size()), file.get());
+    text.append(buffer.data(), got);
+    if (std::ferror(file.get()) != 0) error = errno;
+    if (got == 0) break;
+  }
+  return error == 0 ? text : "";
+}
+
+void writeFile(const fs::path& path, std::string_view text) {
+  try {
+    mcap::OutputFile file(path, mcap::OutputFile::IfExists::kReplace);
+    file.write(mcap::asBytes(text));
+    file.close();
+  } catch (const mcap::WriteError& error) {
+    throw UnavailableError(std::string("cannot write ") + error.what());
+  }
+}
+
+std::vector<fs::path> listFolder(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> paths;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    paths.push_back(entry->path());
+  if (error && error != std::errc::no_such_file_or_directory) {
+    throw UnavailableError("cannot read the folder " + folder.string() + ": " + error.message());
+  }
+  return paths;
 }
 
 }  // namespace baton

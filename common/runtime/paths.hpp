@@ -5,8 +5,11 @@
 ///   an installation  bin/baton   libexec/baton/{baton-plant,...}      share/baton/{scenarios,robots,...}
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace baton {
 
@@ -42,7 +45,16 @@ void makeFolder(const std::filesystem::path& folder);
 /// "20261122-031512-4f2a": sorts by time, newer runs after older ones.
 [[nodiscard]] std::string newRunId();
 
-/// The whole of a file. Throws UnavailableError when it cannot be read.
+/// The whole of a file. Throws UnavailableError, with the system's reason, when it cannot be read.
 [[nodiscard]] std::string readFile(const std::filesystem::path& path);
+/// Its first bytes, at most so many. @param[out] error  0, or errno: then nothing is returned.
+[[nodiscard]] std::string readFile(const std::filesystem::path& path, std::size_t most_bytes, int& error);
+
+/// Makes or replaces a file: whoever reads it meanwhile sees the old one whole. Throws UnavailableError, with the
+/// system's reason, when that cannot be.
+void writeFile(const std::filesystem::path& path, std::string_view text);
+
+/// What is in a folder, nothing when there is no such folder. Throws UnavailableError when it cannot be read.
+[[nodiscard]] std::vector<std::filesystem::path> listFolder(const std::filesystem::path& folder);
 
 }  // namespace baton

@@ -14,15 +14,18 @@ namespace baton {
 namespace fs = std::filesystem;
 namespace {
 
-/// Whether it is a part of an earlier recording of that name, by its own word.
-bool isPartOf(const fs::path& file, const fs::path& recording) {
+/// Why a file is not taken for a part of an earlier recording of that name; empty when it says itself that it is one.
+std::string whyNoPart(const fs::path& file, const fs::path& recording) {
   try {
     const mcap::Reader reader(file, {.trusts_summary = true});
-    return std::ranges::any_of(reader.metadata(), [&](const mcap::Metadata& one) {
+    const bool is_part = std::ranges::any_of(reader.metadata(), [&](const mcap::Metadata& one) {
       return one.name == "baton.part" && mcap::valueOf(one.values, "first") == recording.filename().string();
     });
+    return is_part ? "" : "is none";
+  } catch (const UnavailableError& error) {
+    return std::string("cannot be asked: ") + error.what();
   } catch (const Error&) {
-    return false;
+    return "is none";
   }
 }
 
@@ -68,9 +71,10 @@ fs::path claimRecording(const std::string& option, const std::string& out, bool 
   std::vector<fs::path> there;
   if (is_split) there = furtherPartsOf(path);
   for (const fs::path& file : there) {
-    if (isPartOf(file, path)) continue;
-    throw UsageError(option + " " + out + ": a part of it would be called " + file.string() +
-                     ", which is there and is none: choose another name");
+    const std::string why = whyNoPart(file, path);
+    if (why.empty()) continue;
+    throw UsageError(option + " " + out + ": a part of it would be called " + file.string() + ", which is there and " +
+                     why + ": choose another name");
   }
   if (fs::exists(path)) there.insert(there.begin(), path);
   if (!there.empty() && !overwrite) {

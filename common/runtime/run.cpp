@@ -4,7 +4,6 @@
 
 #include <csignal>
 #include <filesystem>
-#include <iostream>
 
 #include "base/text.hpp"
 #include "dds/parting.hpp"

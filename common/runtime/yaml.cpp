@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <cstring>
 #include <sstream>
 #include <string_view>
 
@@ -15,6 +14,7 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "control/nearest_name.hpp"
+#include "runtime/paths.hpp"
 
 namespace baton {
 namespace {
@@ -402,13 +402,9 @@ std::string shownNumber(double x) {
 }
 
 std::string readYamlFile(const std::string& path) {
-  std::error_code is_none;
-  if (std::filesystem::is_directory(path, is_none)) throw UsageError(path + ": expected a file, found a folder");
-  std::ifstream file(path, std::ios::binary);
-  std::string text(kMaxYamlBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad() || (file.fail() && !file.eof())) throw UsageError(path + ": expected a file that can be read");
-  text.resize(static_cast<std::size_t>(file.gcount()));
+  int error = 0;
+  const std::string text = readFile(path, kMaxYamlBytes + 1, error);
+  if (error != 0) throw UsageError(path + ": expected a file that can be read, found: " + std::strerror(error));
   if (const std::string other = otherFormat(text); !other.empty()) {
     throw UsageError(path + ": expected YAML, found " + other);
   }

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 
@@ -69,8 +68,8 @@ Fork read(const BranchRequest& request) {
 /// Runs what is in `folder` from `set` on, and throws when it does not end well.
 nlohmann::ordered_json runFrom(const CheckpointSet& set, const fs::path& folder, const std::string& scenario_text,
                                const RecordedRun& original, RunRequest request, ExitCode& exit_code) {
-  writeText(folder / "robot.yaml", original.robot_text);
-  writeText(folder / "scenario.yaml", editScenario(scenario_text, {{"robot", "./robot.yaml"}}));
+  writeFile(folder / "robot.yaml", original.robot_text);
+  writeFile(folder / "scenario.yaml", editScenario(scenario_text, {{"robot", "./robot.yaml"}}));
   if (!set.states.empty()) {
     const fs::path checkpoint = folder / ("checkpoint-" + std::to_string(set.step) + ".mcap");
     fs::remove(checkpoint);

@@ -24,19 +24,17 @@ CellClient::CellClient(const RunInfo& info)
 namespace {
 /// How the cell's last run ended, as a sentence; empty when there was none.
 std::string lastRunOf(int domain, const std::string& cell) {
-  namespace fs = std::filesystem;
   std::string newest;
   std::string sentence;
-  std::error_code nothing_yet;
-  for (const auto& entry : fs::directory_iterator(stateFolder() / "runs", nothing_yet)) {
-    const std::string name = entry.path().filename().string();
+  for (const std::filesystem::path& run : listFolder(stateFolder() / "runs")) {
+    const std::string name = run.filename().string();
     if (name < newest) continue;  // they sort by time
     try {
-      const nlohmann::json result = nlohmann::json::parse(readFile(entry.path() / "result.json"));
+      const nlohmann::json result = nlohmann::json::parse(readFile(run / "result.json"));
       if (result.at("cell") != cell || result.at("domain") != domain) continue;
       newest = name;
       sentence = ". Its last run, " + name + ", is over: " + result.at("state").get<std::string>() + " (" +
-                 (entry.path() / "result.json").string() + ")";
+                 (run / "result.json").string() + ")";
     } catch (const std::exception&) {
       continue;  // it left no result
     }

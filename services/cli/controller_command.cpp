@@ -1,7 +1,6 @@
 #include "controller_command.hpp"
 
 #include <algorithm>
-#include <iostream>
 #include <memory>
 #include <vector>
 

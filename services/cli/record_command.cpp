@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <string>
 

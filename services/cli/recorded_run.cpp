@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 
 #include "base/error.hpp"
@@ -281,14 +280,6 @@ std::string repeatingScenario(const RecordedRun& run, std::uint64_t end_step) {
   std::vector<std::string> changes;
   for (const PlannedChange& change : askedChangesOf(run)) changes.push_back(yamlOf(change, run.scenario));
   return appendToScenario(spared, "changes", changes);
-}
-
-void writeText(const fs::path& file, const std::string& text) {
-  std::ofstream stream(file, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream)
-    throw UnavailableError("cannot write " + file.string() + ": expected space and the right to write there");
 }
 
 }  // namespace baton

@@ -49,6 +49,4 @@ struct RecordedRun {
 /// As a scenario's `swaps` has them.
 [[nodiscard]] std::string swapsText(const std::vector<PlannedSwap>& swaps, const Scenario& scenario);
 
-void writeText(const std::filesystem::path& file, const std::string& text);
-
 }  // namespace baton

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "report/recording.hpp"
+#include "runtime/paths.hpp"
 
 namespace baton {
 namespace {
@@ -41,12 +42,12 @@ Rerun rerun(const mcap::FileList& recording, const std::filesystem::path& folder
     throw UsageError(recording.string() +
                      ": expected a run in lockstep, found realtime, whose bytes depend on what came in time");
   }
-  writeText(folder / "robot.yaml", original.robot_text);
-  writeText(folder / "scenario.yaml", repeatingScenario(original, endOf(original)));
+  writeFile(folder / "robot.yaml", original.robot_text);
+  writeFile(folder / "scenario.yaml", repeatingScenario(original, endOf(original)));
   run.scenario = (folder / "scenario.yaml").string();
   if (original.checkpoint) {
     run.checkpoint = (folder / "checkpoint.mcap").string();
-    writeText(run.checkpoint, *original.checkpoint);
+    writeFile(run.checkpoint, *original.checkpoint);
   }
   Rerun made;
   {

@@ -3,10 +3,10 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 
 #include "cell_client.hpp"
@@ -209,21 +209,18 @@ void logs(const std::string& cell, int domain, const std::string& service, int l
     folder = run->folder;
   } else {
     // The newest run there was: folders sort by time.
-    std::error_code nothing_yet;
-    for (const auto& entry : std::filesystem::directory_iterator(stateFolder() / "runs", nothing_yet)) {
-      if (folder.empty() || entry.path() > folder) folder = entry.path();
-    }
+    for (const std::filesystem::path& one : listFolder(stateFolder() / "runs")) folder = std::max(folder, one);
     if (folder.empty()) throw UnavailableError("no run has been started yet: baton up SCENARIO");
   }
   std::string names;
   bool found = false;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() != ".log") continue;
-    const std::string name = entry.path().stem().string();
+  for (const std::filesystem::path& log : listFolder(folder)) {
+    if (log.extension() != ".log") continue;
+    const std::string name = log.stem().string();
     names += (names.empty() ? "" : ", ") + name;
     if (!service.empty() && name != service) continue;
     found = true;
-    say("%s\n%s", entry.path().c_str(), lastLines(entry.path(), static_cast<std::size_t>(lines)).c_str());
+    say("%s\n%s", log.c_str(), lastLines(log, static_cast<std::size_t>(lines)).c_str());
   }
   if (names.empty()) throw UnavailableError(folder.string() + " has no logs: its run ended before it began");
   if (!found) throw UsageError("no log of " + service + ": expected one of " + names);

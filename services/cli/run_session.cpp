@@ -204,14 +204,14 @@ bool RunSession::wasInterrupted() const { return caught_signals > 0; }
 nlohmann::ordered_json RunSession::result() const {
   try {
     return readResult(info_.folder);
-  } catch (const std::exception&) {
+  } catch (const std::exception& error) {
     const std::string last = lastLines(logFile(), 8);
-    if (last.empty()) {
-      throw UnavailableError(
-          "the run ended without a result, and its log, " + logFile() +
-          ", is empty: expected room on that disk, and enough files that a process may open (ulimit -n)");
-    }
-    throw UnavailableError("the run ended without a result; the end of " + logFile() + ":\n" + last);
+    throw UnavailableError(
+        std::string("the run ended without a result: ") + error.what() +
+        (last.empty() ? "; its log, " + logFile() +
+                            ", is empty, as a full disk, too few files that a process may open (ulimit -n) and kill -9 "
+                            "leave it"
+                      : "; the end of " + logFile() + ":\n" + last));
   }
 }
 

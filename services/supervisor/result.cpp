@@ -1,12 +1,11 @@
 #include "result.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
 #include "runtime/json.hpp"
+#include "runtime/paths.hpp"
 #include "runtime/swap_report.hpp"
 #include "runtime/timing.hpp"
 
@@ -71,14 +70,7 @@ void writeResult(const RunInfo& info, const Scenario& scenario, const RunResult&
   }
   json["resident_kB"] = result.resident_kB;
 
-  const std::filesystem::path file = std::filesystem::path(info.folder) / "result.json";
-  const std::filesystem::path draft = file.string() + ".new";
-  std::ofstream stream(draft);
-  stream << toText(json) << '\n';
-  stream.close();
-  std::error_code error(errno, std::generic_category());
-  if (stream) std::filesystem::rename(draft, file, error);
-  if (!stream || error) throw UnavailableError("cannot write " + file.string() + ": " + error.message());
+  writeFile(std::filesystem::path(info.folder) / "result.json", toText(json) + '\n');
 }
 
 }  // namespace baton

@@ -11,6 +11,7 @@
 #include "dds/typed.hpp"
 #include "recorded_run.hpp"
 #include "runtime/admission.hpp"
+#include "runtime/paths.hpp"
 #include "runtime/scenario_edit.hpp"
 #include "runtime/service_options.hpp"
 
@@ -145,8 +146,8 @@ KilledRun killRun(const Scenario& scenario, const std::optional<Kill>& kill, con
     const double until_s = static_cast<double>(kill->step) * scenario.stepSeconds();
     settings.emplace_back("rate", std::to_string(until_s / 2.0));
   }
-  writeText(folder / "robot.yaml", scenario.robot_text);
-  writeText(folder / "scenario.yaml", editScenario(scenario.text, settings));
+  writeFile(folder / "robot.yaml", scenario.robot_text);
+  writeFile(folder / "scenario.yaml", editScenario(scenario.text, settings));
   request.scenario = (folder / "scenario.yaml").string();
   request.paused = true;
 

@@ -1,15 +1,19 @@
 #include "gnuplot.hpp"
 
+#include <fcntl.h>
+#include <spawn.h>
 #include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cctype>
-#include <cstdio>
-#include <fstream>
+#include <cerrno>
+#include <cstring>
+#include <sstream>
 #include <utility>
 
 #include "base/error.hpp"
+#include "runtime/paths.hpp"
 
 namespace baton {
 namespace {
@@ -17,17 +21,21 @@ namespace fs = std::filesystem;
 
 /// Lets gnuplot work on `argument` in `folder`.
 void runGnuplot(const fs::path& folder, const std::string& argument) {
-  const pid_t pid = fork();
-  if (pid == 0) {
-    if (chdir(folder.c_str()) != 0) _exit(126);
-    if (argument == "--version" && freopen("/dev/null", "w", stdout) == nullptr) _exit(126);
-    execlp("gnuplot", "gnuplot", argument.c_str(), nullptr);
-    _exit(127);
-  }
-  int how = 0;
-  if (pid < 0 || waitpid(pid, &how, 0) != pid) throw UnavailableError("cannot start gnuplot");
-  if (WIFEXITED(how) && WEXITSTATUS(how) == 127) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+  if (argument == "--version") posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  std::string program = "gnuplot", word = argument;
+  char* const arguments[] = {program.data(), word.data(), nullptr};
+  pid_t pid = 0;
+  const int error = posix_spawnp(&pid, program.c_str(), &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error == ENOENT && fs::is_directory(folder)) {
     throw UnavailableError("gnuplot is missing: install it (Debian: gnuplot-nox)");
+  }
+  if (error != 0) throw UnavailableError("cannot start gnuplot in " + folder.string() + ": " + std::strerror(error));
+  int how = 0;
+  while (waitpid(pid, &how, 0) < 0 && errno == EINTR) {
   }
   if (!WIFEXITED(how) || WEXITSTATUS(how) != 0) {
     throw UnavailableError("gnuplot failed on " + (folder / argument).string() + ": run it by hand to see why");
@@ -46,7 +54,7 @@ std::string quoted(const std::string& text) {
 }
 
 void drawScript(const fs::path& stem, const PictureSize& size, const std::string& data, const std::string& commands) {
-  std::ofstream script(stem.string() + ".gp", std::ios::binary);
+  std::ostringstream script;
   script << "# Drawn by baton; run gnuplot on this file to draw it again.\nset encoding utf8\n" << data;
   const std::string name = stem.filename().string();
   for (const auto& [terminal, extension] :
@@ -56,8 +64,7 @@ void drawScript(const fs::path& stem, const PictureSize& size, const std::string
                           quoted(name + "." + extension))
            << commands << "unset output\nreset\n";
   }
-  script.close();
-  if (!script) throw UnavailableError("cannot write " + stem.string() + ".gp");
+  writeFile(stem.string() + ".gp", script.str());
   runGnuplot(stem.parent_path(), name + ".gp");
 }
 

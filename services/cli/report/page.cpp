@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <ostream>
+#include <sstream>
 
 #include "base/error.hpp"
 #include "html.hpp"
+#include "runtime/paths.hpp"
 
 namespace baton {
 namespace {
@@ -105,7 +107,7 @@ std::string verdictTag(const FigureResult& result) {
   return fmt::format("<span class='tag {}'>{}</span>", className(result.verdict()), toString(result.verdict()));
 }
 
-void writeSummary(std::ofstream& page, const std::vector<FigureResult>& results) {
+void writeSummary(std::ostream& page, const std::vector<FigureResult>& results) {
   page << "<table><tr><th>figure<th><th>the report's claim<th>our runs\n";
   for (const FigureResult& result : results) {
     page << fmt::format("<tr><td><a href='#{}'>{}</a><td>{}<td>{}<td>{}\n", anchorOf(result.figure),
@@ -115,7 +117,7 @@ void writeSummary(std::ofstream& page, const std::vector<FigureResult>& results)
   page << "</table>\n";
 }
 
-void writeChecks(std::ofstream& page, const std::vector<Check>& checks) {
+void writeChecks(std::ostream& page, const std::vector<Check>& checks) {
   if (checks.empty()) return;
   page << "<table><tr><th>quantity<th class=number>predicted<th class=number>measured<th class=number>difference"
           "<th class=number>allowed<th>\n";
@@ -132,7 +134,7 @@ void writeChecks(std::ofstream& page, const std::vector<Check>& checks) {
   page << "</table>\n";
 }
 
-void writeFigure(std::ofstream& page, const FigureResult& result) {
+void writeFigure(std::ostream& page, const FigureResult& result) {
   const Figure& figure = result.figure;
   page << fmt::format("<h2 id='{}'>{}{}: {}</h2>\n", anchorOf(figure),
                       std::isdigit(static_cast<unsigned char>(figure.number.front())) != 0 ? "Figure " : "",
@@ -175,7 +177,7 @@ std::string standing(const Erratum& erratum, const std::vector<FigureResult>& re
   return is_established ? "<span class=agrees>established</span>" : "<span class='tag differs'>not established</span>";
 }
 
-void writeErrata(std::ofstream& page, const std::vector<Erratum>& errata, const std::vector<FigureResult>& results) {
+void writeErrata(std::ostream& page, const std::vector<Erratum>& errata, const std::vector<FigureResult>& results) {
   page << "<h2 id='errata'>What the report has wrong</h2>\n"
           "<p><em>Established</em>: both sides were run or measured in the figures named, and all their numbers agree. "
           "<em>What is right agrees with theory:</em> what is printed was not run, what is right was. <em>No "
@@ -209,7 +211,7 @@ const char* toString(ClaimVerdict verdict) {
 
 void writePage(const std::filesystem::path& file, const std::vector<FigureResult>& results,
                const std::vector<Erratum>& errata, const PageFacts& facts) {
-  std::ofstream page(file, std::ios::binary);
+  std::ostringstream page;
   page << kHead;
   page << kIntroduction << kSymbols;
   page << fmt::format("<p>{} runs, {} of them reused from before; {:.0f} s. Made by {}.</p>\n", facts.runs,
@@ -227,8 +229,7 @@ void writePage(const std::filesystem::path& file, const std::vector<FigureResult
     writeAll(true);
   }
   page << "</html>\n";
-  page.close();
-  if (!page) throw UnavailableError("cannot write " + file.string() + ": expected space and the right to write there");
+  writeFile(file, page.str());
 }
 
 }  // namespace baton

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <iterator>
 #include <map>
 #include <set>
@@ -13,6 +15,7 @@
 #include "recorded_run.hpp"
 #include "report/recording.hpp"
 #include "runtime/checkpoint.hpp"
+#include "runtime/paths.hpp"
 #include "runtime/recorded_messages.hpp"
 #include "runtime/running_law.hpp"
 
@@ -62,7 +65,7 @@ class Scratch {
   Scratch() {
     std::string pattern = (fs::temp_directory_path() / "baton-whatif-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) {
-      throw UnavailableError("cannot make a folder like " + pattern + ": expected space and the right to write there");
+      throw UnavailableError("cannot make a folder like " + pattern + ": " + std::strerror(errno));
     }
     folder_ = pattern;
   }
@@ -84,7 +87,7 @@ std::optional<std::vector<std::uint8_t>> stateAtBranch(const RecordedRun& run, c
   if (!run.checkpoint) return std::nullopt;
   const Scratch scratch;
   const fs::path file = scratch.file("checkpoint.mcap");
-  writeText(file, *run.checkpoint);
+  writeFile(file, *run.checkpoint);
   const CheckpointSet set = readCheckpoint(file);
   const auto found = set.states.find(controller);
   return found == set.states.end() ? std::nullopt : std::optional(found->second);

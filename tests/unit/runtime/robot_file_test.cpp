@@ -154,7 +154,7 @@ TEST(RobotFile, MayHaveEightJointsAndNoMore) {
 
 TEST(RobotFile, ThatIsNotThereIsNamed) {
   EXPECT_EQ(refusal([] { return loadRobot("nowhere/arm.yaml"); }),
-            "nowhere/arm.yaml: expected a file that can be read");
+            "nowhere/arm.yaml: expected a file that can be read, found: No such file or directory");
 }
 
 // Two independent writings of one robot: the file, and the program text that the mathematics is tested with. 1e-9 is

@@ -442,7 +442,7 @@ TEST_F(ScenarioFolder, NamesTheRobotFileThatIsMissingOrWrong) {
   const std::string file = write("scenarios/a.yaml", "name: a\nrobot: ../robots/b.yaml\n");
   const std::string robot = (root / "robots/b.yaml").lexically_normal().string();
   EXPECT_EQ(refusal([&] { return loadScenario(file); }),
-            file + ":2: robot: " + robot + ": expected a file that can be read");
+            file + ":2: robot: " + robot + ": expected a file that can be read, found: No such file or directory");
   write("robots/b.yaml", "nam: b\n");
   EXPECT_EQ(refusal([&] { return loadScenario(file); }).rfind(robot + ":1: unknown key 'nam'; did you mean 'name'?", 0),
             0u);
@@ -450,7 +450,8 @@ TEST_F(ScenarioFolder, NamesTheRobotFileThatIsMissingOrWrong) {
 
 TEST_F(ScenarioFolder, ThatHasNoScenarioIsNamed) {
   const std::string file = (root / "none.yaml").string();
-  EXPECT_EQ(refusal([&] { return loadScenario(file); }), file + ": expected a file that can be read");
+  EXPECT_EQ(refusal([&] { return loadScenario(file); }),
+            file + ": expected a file that can be read, found: No such file or directory");
 }
 
 }  // namespace

@@ -256,8 +256,8 @@ TEST(YamlMessage, ShowsForeignTextShortAndWithoutControlCharacters) {
 
 TEST(YamlFile, ThatCannotBeReadIsNamed) {
   EXPECT_EQ(refusal([] { return readYamlFile("no/such/file.yaml"); }),
-            "no/such/file.yaml: expected a file that can be read");
-  EXPECT_EQ(refusal([] { return readYamlFile("/"); }), "/: expected a file, found a folder");
+            "no/such/file.yaml: expected a file that can be read, found: No such file or directory");
+  EXPECT_EQ(refusal([] { return readYamlFile("/"); }), "/: expected a file that can be read, found: Is a directory");
   EXPECT_NE(refusal([] { return readYamlFile("/dev/zero"); }).find("expected a file of at most 1048576 bytes"),
             std::string::npos);
 }
