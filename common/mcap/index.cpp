@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <set>
 
 #include "mcap/crc.hpp"
 
@@ -134,15 +133,6 @@ SummaryProblem inconsistency(const FileIndex& index, bool has_statistics) {
   }
   if (statistics.chunk_count == 0 && statistics.message_count != 0) return {"its messages are not indexed", true};
   return {};
-}
-
-/// Where damage shows again when what the summary lists is read.
-std::set<std::uint64_t> placesIn(const FileIndex& summary) {
-  std::set<std::uint64_t> places;
-  for (const Extent& one : summary.extents) places.insert(one.offset);
-  for (const AttachmentIndex& one : summary.attachments) places.insert(one.offset);
-  for (const MetadataIndex& one : summary.metadata) places.insert(one.offset);
-  return places;
 }
 
 }  // namespace
@@ -314,19 +304,13 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
     ReaderOptions tolerant = options;
     tolerant.on_damage = [&damage](const Damage& found) { damage.push_back(found); };
     FileIndex found = scanFile(file, tolerant, &*summary);
+    if (options.on_damage) std::ranges::for_each(damage, options.on_damage);
     const auto lost = std::ranges::find_if(damage, [](const Damage& one) { return one.messages > 0; });
-    problem.text = lost == damage.end() ? contradictionOf(*summary, found, !damage.empty())
-                                        : "its summary is not that of its data: " + describe(*lost);
-    if (problem.text.empty()) {
-      if (damage.empty() || !options.on_damage) return *summary;
-      const std::set<std::uint64_t> read_again = placesIn(*summary);
-      for (const Damage& one : damage) {
-        if (!read_again.contains(one.offset)) options.on_damage(one);
-      }
-      return *summary;
-    }
+    problem.text = !found.info.is_complete ? "its data cannot be followed to their end: " + found.info.problem
+                   : lost == damage.end()  ? contradictionOf(*summary, found, !damage.empty())
+                                           : "its summary is not that of its data: " + describe(*lost);
+    if (problem.text.empty()) return *summary;
     if (options.on_damage || damage.empty()) {
-      for (const Damage& one : damage) options.on_damage(one);
       if (found.info.problem.empty()) found.info.problem = problem.text;
       return found;
     }

@@ -35,7 +35,8 @@ struct ReaderOptions {
   /// Takes the index of a summary without a look at the data: in no time, for what a file says of itself. Whether the
   /// summary is that of its data stays open; a file without one that can be used is read whole all the same.
   bool trusts_summary = false;
-  /// When given, a damaged chunk is reported here and left out. Otherwise it is thrown as FormatError.
+  /// When given, what is damaged is reported here and left out: all of it when the file is opened. Otherwise a damaged
+  /// chunk is thrown as FormatError. A Reader reports the same damage once.
   std::function<void(const Damage&)> on_damage{};
   /// Told, chunk by chunk, how many bytes have been read of how many while a file is indexed.
   std::function<void(std::uint64_t, std::uint64_t)> on_progress{};

@@ -51,9 +51,7 @@ JoinedReader::JoinedReader(const FileList& files, const DamageSink& on_damage) {
   for (const std::filesystem::path& path : files.paths()) {
     ReaderOptions options;
     if (on_damage) {
-      options.on_damage = [on_damage, path, told = std::make_shared<std::set<Damage>>()](const Damage& damage) {
-        if (told->insert(damage).second) on_damage(path, damage);
-      };
+      options.on_damage = [on_damage, path](const Damage& damage) { on_damage(path, damage); };
     }
     parts_.push_back({.reader = std::make_unique<Reader>(path, options), .routes = {}, .repeated = {}});
   }

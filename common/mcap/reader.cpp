@@ -1,5 +1,9 @@
 #include "mcap/reader.hpp"
 
+#include <memory>
+#include <set>
+#include <string>
+#include <tuple>
 #include <utility>
 
 #include "mcap/crc.hpp"
@@ -24,6 +28,17 @@ OpeningSink& openingSink() {
   return sink;
 }
 
+/// Passes over a file come across the same damage: it is reported once.
+ReaderOptions reportingOnce(ReaderOptions options) {
+  if (!options.on_damage) return options;
+  using Reported = std::set<std::tuple<std::uint64_t, std::uint64_t, std::string>>;
+  options.on_damage = [report = std::move(options.on_damage),
+                       reported = std::make_shared<Reported>()](const Damage& damage) {
+    if (reported->emplace(damage.offset, damage.length, damage.reason).second) report(damage);
+  };
+  return options;
+}
+
 /// indexFile(), shown by the program's sink when nothing else shows it.
 FileIndex indexShown(const InputFile& file, const ReaderOptions& options) {
   if (!openingSink() || options.on_progress) return indexFile(file, options);
@@ -42,7 +57,7 @@ FileIndex indexShown(const InputFile& file, const ReaderOptions& options) {
 void setOpeningSink(OpeningSink sink) { openingSink() = std::move(sink); }
 
 Reader::Reader(const std::filesystem::path& path, ReaderOptions options)
-    : options_(std::move(options)), file_(path), index_(indexShown(file_, options_)) {}
+    : options_(reportingOnce(std::move(options))), file_(path), index_(indexShown(file_, options_)) {}
 
 Bytes Reader::readAttachment(const AttachmentIndex& attachment) const {
   const RecordPlace place = recordAt(file_, Opcode::kAttachment, attachment.offset, attachment.length);

@@ -313,6 +313,30 @@ TEST_P(PlainDamageTest, ASummaryCannotListAChunkManyTimes) {
   EXPECT_EQ(samplesOf(reader).size(), 1U);
 }
 
+TEST_P(PlainDamageTest, DamageIsReportedWhenTheFileIsOpenedAndOnce) {
+  const Bytes file = smallRecording();
+  const std::vector<RawRecord> records = rawRecords(file);
+  for (const std::uint8_t opcode : {std::uint8_t{0x06}, std::uint8_t{0x09}, std::uint8_t{0x0C}}) {
+    SCOPED_TRACE(static_cast<int>(opcode));
+    const RawRecord record = *std::ranges::find(records, opcode, &RawRecord::opcode);
+    Bytes damaged = file;
+    // The last byte of a chunk; lengths in the others.
+    damaged[opcode == 0x06   ? record.end() - 1
+            : opcode == 0x09 ? record.offset + 9 + 16 + 3
+                             : record.offset + 9 + 3] ^= std::byte{0x40};
+    saveFile(path, damaged);
+    std::vector<Damage> damages;
+    ReaderOptions options;
+    options.on_damage = [&](const Damage& damage) { damages.push_back(damage); };
+    const Reader reader(path, options);
+    ASSERT_EQ(damages.size(), 1U) << "nobody who reads a topic of another chunk would know";
+    EXPECT_EQ(damages[0].offset, record.offset);
+    (void)samplesOf(reader);
+    (void)samplesOf(reader);
+    EXPECT_EQ(damages.size(), 1U);
+  }
+}
+
 TEST_P(PlainDamageTest, ADamagedAttachmentIsReported) {
   Bytes file = smallRecording();
   const std::vector<RawRecord> records = rawRecords(file);
