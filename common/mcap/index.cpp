@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "mcap/crc.hpp"
+#include "mcap/shape.hpp"
 
 namespace baton::mcap {
 namespace {
@@ -155,7 +156,7 @@ std::optional<RecordPlace> RecordWalk::next() {
   const RecordPlace place{
       .opcode = Opcode{in.number<std::uint8_t>()}, .offset = position_, .body_length = in.number<std::uint64_t>()};
   if (place.opcode == Opcode::kInvalid) {
-    problem_ = "byte " + here + ": opcode 0 begins no record";
+    problem_ = "byte " + here + ": " + zerosText(zerosAt(file_, position_, end_)) + ", are in the place of a record";
     return std::nullopt;
   }
   if (place.body_length > left - kRecordHeadBytes) {

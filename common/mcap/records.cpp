@@ -1,5 +1,6 @@
 #include "mcap/records.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace baton::mcap {
@@ -47,6 +48,21 @@ Id takeId(ByteReader& in) {
   return Id{in.number<std::uint16_t>()};
 }
 
+std::uint64_t zerosAtBegin(ByteView bytes) {
+  return static_cast<std::uint64_t>(std::ranges::find_if(bytes, [](std::byte one) { return one != std::byte{0}; }) -
+                                    bytes.begin());
+}
+
+/// The fields of a body that has been written. One of zeros reads as that of an empty record with bytes behind its
+/// known fields, which would be no error; but nobody writes that.
+ByteReader fieldsOf(Opcode opcode, ByteView body) {
+  const std::uint64_t least = leastBytes(opcode);
+  if (body.size() > least && zerosAtBegin(body.first(static_cast<std::size_t>(least))) == least) {
+    throw FormatError(zerosText(zerosAtBegin(body)) + ", are in the place of its fields");
+  }
+  return ByteReader(body);
+}
+
 StringMap takeMap(ByteReader& in) {
   StringMap map;
   ByteReader entries(in.sized());
@@ -81,6 +97,31 @@ std::string opcodeName(Opcode opcode) {
   char name[16];
   std::snprintf(name, sizeof(name), "record 0x%02X", static_cast<unsigned>(opcode));
   return name;
+}
+
+std::string zerosText(std::uint64_t bytes) {
+  return std::to_string(bytes) + " zero bytes, as a file system leaves them after a crash";
+}
+
+std::uint64_t leastBytes(Opcode opcode) {
+  switch (opcode) {
+    case Opcode::kHeader: return 4 + 4;
+    case Opcode::kFooter: return 8 + 8 + 4;
+    case Opcode::kSchema: return 2 + 4 + 4 + 4;
+    case Opcode::kChannel: return 2 + 2 + 4 + 4 + 4;
+    case Opcode::kMessage: return 2 + 4 + 8 + 8;
+    case Opcode::kChunk: return 8 + 8 + 8 + 4 + 4 + 8;
+    case Opcode::kMessageIndex: return 2 + 4;
+    case Opcode::kChunkIndex: return 8 + 8 + 8 + 8 + 4 + 8 + 4 + 8 + 8;
+    case Opcode::kAttachment: return 8 + 8 + 4 + 4 + 8 + 4;
+    case Opcode::kAttachmentIndex: return 8 + 8 + 8 + 8 + 8 + 4 + 4;
+    case Opcode::kStatistics: return 8 + 2 + 4 + 4 + 4 + 4 + 8 + 8 + 4;
+    case Opcode::kMetadata: return 4 + 4;
+    case Opcode::kMetadataIndex: return 8 + 8 + 4;
+    case Opcode::kSummaryOffset: return 1 + 8 + 8;
+    case Opcode::kDataEnd: return 4;
+    default: return 0;
+  }
 }
 
 void appendHeader(Bytes& out, const Header& header) {
@@ -236,7 +277,7 @@ void appendDataEnd(Bytes& out, const DataEnd& data_end) {
 // Braced initialisers are evaluated from left to right, so the fields below come off the bytes in their order.
 
 Header decodeHeader(ByteView body) {
-  ByteReader in(body);
+  ByteReader in = fieldsOf(Opcode::kHeader, body);
   return {.profile = in.string(), .library = in.string()};
 }
 
@@ -248,7 +289,7 @@ Footer decodeFooter(ByteView body) {
 }
 
 Schema decodeSchema(ByteView body) {
-  ByteReader in(body);
+  ByteReader in = fieldsOf(Opcode::kSchema, body);
   Schema schema{.id = takeId<SchemaId>(in), .name = in.string(), .encoding = in.string()};
   const ByteView data = in.sized();
   schema.data.assign(data.begin(), data.end());
@@ -256,7 +297,7 @@ Schema decodeSchema(ByteView body) {
 }
 
 Channel decodeChannel(ByteView body) {
-  ByteReader in(body);
+  ByteReader in = fieldsOf(Opcode::kChannel, body);
   return {.id = takeId<ChannelId>(in),
           .schema_id = takeId<SchemaId>(in),
           .topic = in.string(),
@@ -274,7 +315,7 @@ Message decodeMessage(ByteView body) {
 }
 
 Chunk decodeChunk(ByteView body) {
-  ByteReader in(body);
+  ByteReader in = fieldsOf(Opcode::kChunk, body);
   return {.start_time_ns = in.number<std::uint64_t>(),
           .end_time_ns = in.number<std::uint64_t>(),
           .plain_size = in.number<std::uint64_t>(),
@@ -284,7 +325,7 @@ Chunk decodeChunk(ByteView body) {
 }
 
 MessageIndex decodeMessageIndex(ByteView body) {
-  ByteReader in(body);
+  ByteReader in = fieldsOf(Opcode::kMessageIndex, body);
   MessageIndex index{.channel_id = takeId<ChannelId>(in)};
   ByteReader entries(in.sized());
   index.entries.reserve(entries.rest().size() / sizeof(MessageIndex::Entry));
@@ -314,7 +355,7 @@ ChunkIndex decodeChunkIndex(ByteView body) {
 }
 
 AttachmentHead decodeAttachmentHead(ByteView body) {
-  ByteReader in(body);
+  ByteReader in = fieldsOf(Opcode::kAttachment, body);
   AttachmentHead head{.fields = {.log_time_ns = in.number<std::uint64_t>(),
                                  .create_time_ns = in.number<std::uint64_t>(),
                                  .name = in.string(),
@@ -354,7 +395,7 @@ Statistics decodeStatistics(ByteView body) {
 }
 
 Metadata decodeMetadata(ByteView body) {
-  ByteReader in(body);
+  ByteReader in = fieldsOf(Opcode::kMetadata, body);
   return {.name = in.string(), .values = takeMap(in)};
 }
 
@@ -377,6 +418,8 @@ DataEnd decodeDataEnd(ByteView body) {
 
 std::optional<RecordView> nextRecord(ByteReader& in) {
   if (in.empty()) return std::nullopt;
+  if (in.rest().front() == std::byte{0})
+    throw FormatError(zerosText(zerosAtBegin(in.rest())) + ", are in the place of a record");
   const Opcode opcode{in.number<std::uint8_t>()};
   return RecordView{opcode, in.bytes(in.number<std::uint64_t>())};
 }

@@ -1,8 +1,9 @@
 /// The records of an MCAP file, as plain structs, and their bytes (specification: mcap.dev/spec, version 0).
 ///
 /// A record is an opcode (u8), the length of its body (u64) and the body. decodeX takes a body and throws FormatError
-/// when a length inside it does not fit; bytes behind the known fields are ignored, as the specification asks. appendX
-/// adds the whole record to `out`. Structs with a ByteView borrow their data.
+/// when a length inside it does not fit, or when there is nothing but zeros where its fields are, and more after them;
+/// bytes behind the known fields are ignored, as the specification asks. appendX adds the whole record to `out`.
+/// Structs with a ByteView borrow their data.
 #pragma once
 
 #include <array>
@@ -42,6 +43,12 @@ enum class Opcode : std::uint8_t {
 
 /// "Chunk", "Message", ...; "record 0x42" for one this version does not know.
 [[nodiscard]] std::string opcodeName(Opcode opcode);
+
+/// "12 zero bytes, ...": records are never that.
+[[nodiscard]] std::string zerosText(std::uint64_t bytes);
+
+/// The least that a record's body holds; 0 for kinds that are not known.
+[[nodiscard]] std::uint64_t leastBytes(Opcode opcode);
 
 /// Opcode and length in front of every body.
 inline constexpr std::size_t kRecordHeadBytes = 9;
@@ -220,7 +227,8 @@ struct RecordView {
   Opcode opcode{};
   ByteView body{};
 };
-/// Takes the next record off `in`; nothing at its end. Throws FormatError when the record does not fit.
+/// Takes the next record off `in`; nothing at its end. Throws FormatError when the record does not fit, or where zeros
+/// are in the place of one.
 [[nodiscard]] std::optional<RecordView> nextRecord(ByteReader& in);
 
 }  // namespace baton::mcap

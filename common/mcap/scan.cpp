@@ -5,6 +5,7 @@
 #include "mcap/contents.hpp"
 #include "mcap/extent.hpp"
 #include "mcap/index.hpp"
+#include "mcap/search.hpp"
 #include "mcap/shape.hpp"
 
 namespace baton::mcap {
@@ -18,16 +19,13 @@ constexpr std::uint64_t kAttachmentHeadBytes = 1 << 20;
 
 /// Contradictions and cuts that are named one by one: a file can have any number.
 constexpr std::size_t kMostNoted = 20;
-/// Records are searched for another recording in a file with fewer: each may claim to reach to the end of the file.
+/// Records are searched for another recording in a file with fewer.
 constexpr std::size_t kMostJoined = 100;
-
-/// Where to go on behind damage is looked for in pieces that grow from this up to kRunBytes: it may be near, often.
-constexpr std::uint64_t kSearchBytes = 4 << 10;
 
 class Scan {
  public:
   Scan(const InputFile& file, const ReaderOptions& options, const FileIndex* summary)
-      : file_(file), options_(options), loader_(file, options), declarations_(index_, summary) {}
+      : file_(file), options_(options), loader_(file, options), search_(file), declarations_(index_, summary) {}
 
   FileIndex run() {
     index_.info.file_bytes = file_.size();
@@ -42,7 +40,7 @@ class Scan {
         closeRun();
         closeFile(*place);
         const std::uint64_t end = index_.info.complete_bytes, longest_cut = is_closed_ ? 0 : kMagic.size();
-        if (goOnWithNextRecording(walk, recordingIn(end, end + longest_cut).value_or(end))) continue;
+        if (goOnWithNextRecording(walk, search_.recordingIn(end, end + longest_cut).value_or(end))) continue;
         return finish();
       }
       if (is_data_) {
@@ -94,21 +92,11 @@ class Scan {
 
   /// What a DataEnd is followed by distinguishes one with added fields from another record with a damaged opcode.
   [[nodiscard]] bool isDataEnd(const RecordPlace& place) const {
-    constexpr std::uint64_t kDataEndBytes = 4;
-    if (place.opcode != Opcode::kDataEnd || place.body_length <= kDataEndBytes) {
-      return place.opcode == Opcode::kDataEnd && place.body_length == kDataEndBytes;
+    const std::uint64_t least = leastBytes(Opcode::kDataEnd);
+    if (place.opcode != Opcode::kDataEnd || place.body_length <= least) {
+      return place.opcode == Opcode::kDataEnd && place.body_length == least;
     }
-    switch (Opcode{static_cast<std::uint8_t>(numberAt<std::uint8_t>(file_, place.end()))}) {
-      case Opcode::kFooter:
-      case Opcode::kSchema:
-      case Opcode::kChannel:
-      case Opcode::kStatistics:
-      case Opcode::kChunkIndex:
-      case Opcode::kAttachmentIndex:
-      case Opcode::kMetadataIndex:
-      case Opcode::kSummaryOffset: return true;
-      default: return false;
-    }
+    return beginsIndex(file_, place.end());
   }
 
   /// Data after the end of the data are in no index, and nothing says whether they belong there.
@@ -151,29 +139,37 @@ class Scan {
 
   /// Where the records cannot be followed any more, because none is there, because the lengths in one disagree, or
   /// because it was cut and reaches into another recording, a caller who wants what is left gets what follows from the
-  /// next chunk, attachment or recording on. False when all is well or nothing follows.
+  /// next record on that can be told by its shape. False when all is well or nothing follows.
   bool goOnBehindDamage(RecordWalk& walk, const std::optional<RecordPlace>& place) {
-    if (!options_.on_damage) return false;
     const std::uint64_t from = place ? place->offset : walk.position();
     const bool disagrees = place && is_data_ && isTorn(*place);
     std::optional<std::uint64_t> next;
     if (disagrees || !walk.problem().empty()) {
-      next = searchFrom(from);
+      next = is_data_ ? search_.dataAfter(from) : search_.recordingIn(from, file_.size());
     } else if (place) {
       next = recordingInTorn(walk, *place);
     }
     if (!next) return false;
     closeRun();
     if (is_data_) {  // an index can be made again
-      const std::string kind = place ? opcodeName(place->opcode) : "";
-      options_.on_damage({.offset = from,
-                          .length = *next - from,
-                          .reason = !place      ? walk.problem()
-                                    : disagrees ? "the lengths of the " + kind + " there disagree"
-                                                : "the " + kind + " there is cut, another recording begins in it"});
+      lose({.offset = from, .length = *next - from, .reason = place ? whyTorn(*place, disagrees) : walk.problem()});
     }
     walk.moveTo(*next);
     return true;
+  }
+
+  /// Reports it, or throws it when nobody wants what is left.
+  void lose(const Damage& damage) const {
+    if (!options_.on_damage) throw FormatError(file_.path().string() + ": " + describe(damage));
+    options_.on_damage(damage);
+  }
+
+  [[nodiscard]] std::string whyTorn(const RecordPlace& place, bool disagrees) const {
+    const std::string what = "the " + opcodeName(place.opcode) + " there ";
+    if (!disagrees) return what + "is cut, another recording begins in it";
+    const std::uint64_t zeros = zerosAt(file_, place.offset + kRecordHeadBytes, file_.size());
+    return zeros < leastBytes(place.opcode) ? "the lengths of " + what + "disagree"
+                                            : what + "has " + zerosText(zeros) + ", in the place of its fields";
   }
 
   [[nodiscard]] bool isTorn(const RecordPlace& place) const {
@@ -204,73 +200,10 @@ class Scan {
     return crcOf(file_, place.offset + kRecordHeadBytes, crc_at) == crc;
   }
 
-  /// The recording that begins in a record and ends after it: of those that lie in it each magic has a second one.
+  /// See Search; each record of many may claim to reach to the end of the file.
   [[nodiscard]] std::optional<std::uint64_t> recordingBeyond(std::uint64_t record, std::uint64_t end) {
     if (index_.info.beginnings.size() >= kMostJoined) return std::nullopt;
-    std::optional<std::uint64_t> first;
-    bool is_open = false;
-    forEachMagic(record + kRecordHeadBytes, end, [&](std::uint64_t at) {
-      if (!first && beginsRecording(file_, at)) first = at;
-      if (first) is_open = !is_open;
-      return true;
-    });
-    return is_open ? first : std::nullopt;
-  }
-
-  [[nodiscard]] std::optional<std::uint64_t> recordingIn(std::uint64_t from, std::uint64_t end) {
-    std::optional<std::uint64_t> first;
-    forEachMagic(from, end, [&](std::uint64_t at) {
-      if (beginsRecording(file_, at)) first = at;
-      return !first;
-    });
-    return first;
-  }
-
-  /// Those that begin from one byte on and before the other. @param use  returns whether it wants the next one, too.
-  template <class Use>
-  void forEachMagic(std::uint64_t from, std::uint64_t end, Use use) {
-    for (end = std::min(end, file_.size()); from < end; from += kRunBytes) {
-      // One that begins in this piece is looked at whole.
-      const std::uint64_t size = std::min(std::min(end - from, kRunBytes) + kMagic.size() - 1, file_.size() - from);
-      const std::span<std::byte> window = storage_.resize(static_cast<std::size_t>(size));
-      file_.read(from, window);
-      for (auto magic = window.begin();; magic += kMagic.size()) {
-        magic = std::search(magic, window.end(), kMagic.begin(), kMagic.end());
-        if (magic == window.end()) break;
-        if (!use(from + static_cast<std::uint64_t>(magic - window.begin()))) return;
-      }
-    }
-  }
-
-  /// Where the next chunk or attachment begins, or another recording, after what is torn there. A recording that is
-  /// attached to this one has chunks that are not of this one: attachments are found whole, and of one whose own
-  /// beginning is damaged the magic tells. Two magics are the end of this recording and the beginning of another that
-  /// was joined to it; one is when what is torn holds no recording.
-  [[nodiscard]] std::optional<std::uint64_t> searchFrom(std::uint64_t torn) {
-    if (!is_data_) return recordingIn(torn, file_.size());
-    const bool may_hold = mayHoldRecording(file_, torn);
-    bool is_inside = false;  // of a recording in an attachment
-    std::uint64_t size = kSearchBytes;
-    for (std::uint64_t from = torn + 1; from + kRecordHeadBytes < file_.size();
-         from += size, size = std::min(2 * size, kRunBytes)) {
-      // Records that begin in this piece are looked at whole, and so is a magic: it ends behind it.
-      const std::span<std::byte> window =
-          storage_.resize(static_cast<std::size_t>(std::min(size + kMagic.size() - 1, file_.size() - from)));
-      file_.read(from, window);
-      for (std::size_t i = 0; i < std::min<std::uint64_t>(size, window.size()); ++i) {
-        if (std::ranges::equal(ByteView(window).subspan(i).first(std::min(kMagic.size(), window.size() - i)), kMagic)) {
-          if (beginsRecording(file_, from + i + kMagic.size())) return from + i + kMagic.size();
-          if (!may_hold && beginsRecording(file_, from + i)) return from + i;
-          is_inside = !is_inside;
-        }
-        const auto opcode = Opcode{std::to_integer<std::uint8_t>(window[i])};
-        if (is_inside || (opcode != Opcode::kChunk && opcode != Opcode::kAttachment)) continue;
-        const RecordPlace place{
-            .opcode = opcode, .offset = from + i, .body_length = numberAt<std::uint64_t>(file_, from + i + 1)};
-        if (place.body_length < file_.size() && place.end() <= file_.size() && fits(file_, place)) return place.offset;
-      }
-    }
-    return std::nullopt;
+    return search_.recordingBeyond(record, end);
   }
 
   void take(const RecordPlace& place) {
@@ -461,6 +394,7 @@ class Scan {
   const InputFile& file_;
   const ReaderOptions& options_;
   ExtentLoader loader_;
+  Search search_;
   Buffer storage_;
   FileIndex index_;
   Declarations declarations_;

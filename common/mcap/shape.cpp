@@ -8,28 +8,6 @@
 namespace baton::mcap {
 namespace {
 
-/// The least that a record's body holds.
-std::uint64_t leastBytes(Opcode opcode) {
-  switch (opcode) {
-    case Opcode::kHeader: return 4 + 4;
-    case Opcode::kFooter: return 8 + 8 + 4;
-    case Opcode::kSchema: return 2 + 4 + 4 + 4;
-    case Opcode::kChannel: return 2 + 2 + 4 + 4 + 4;
-    case Opcode::kMessage: return 2 + 4 + 8 + 8;
-    case Opcode::kChunk: return 8 + 8 + 8 + 4 + 4 + 8;
-    case Opcode::kMessageIndex: return 2 + 4;
-    case Opcode::kChunkIndex: return 8 + 8 + 8 + 8 + 4 + 8 + 4 + 8 + 8;
-    case Opcode::kAttachment: return 8 + 8 + 4 + 4 + 8 + 4;
-    case Opcode::kAttachmentIndex: return 8 + 8 + 8 + 8 + 8 + 4 + 4;
-    case Opcode::kStatistics: return 8 + 2 + 4 + 4 + 4 + 4 + 8 + 8 + 4;
-    case Opcode::kMetadata: return 4 + 4;
-    case Opcode::kMetadataIndex: return 8 + 8 + 4;
-    case Opcode::kSummaryOffset: return 1 + 8 + 8;
-    case Opcode::kDataEnd: return 4;
-    default: return 0;
-  }
-}
-
 /// Bytes of a body that the known fields take, by the lengths among them; nothing when they are more than there are.
 /// For kinds that are large, or that lie between them.
 std::optional<std::uint64_t> knownBytes(const InputFile& file, const RecordPlace& place) {
@@ -68,7 +46,8 @@ bool isKnown(const InputFile& file, const RecordPlace& place, bool is_exact) {
   return known && (!is_exact || *known == place.body_length);
 }
 
-/// Whether such a record lies there, whole.
+}  // namespace
+
 bool beginsRecord(const InputFile& file, std::uint64_t offset, bool is_exact) {
   const RecordPlace place{.opcode = Opcode{static_cast<std::uint8_t>(numberAt<std::uint8_t>(file, offset))},
                           .offset = offset,
@@ -76,13 +55,42 @@ bool beginsRecord(const InputFile& file, std::uint64_t offset, bool is_exact) {
   return place.body_length < file.size() && place.end() <= file.size() && isKnown(file, place, is_exact);
 }
 
-}  // namespace
+bool beginsIndex(const InputFile& file, std::uint64_t offset) {
+  if (!beginsRecord(file, offset, false)) return false;
+  switch (Opcode{static_cast<std::uint8_t>(numberAt<std::uint8_t>(file, offset))}) {
+    case Opcode::kFooter:
+    case Opcode::kSchema:
+    case Opcode::kChannel:
+    case Opcode::kStatistics:
+    case Opcode::kChunkIndex:
+    case Opcode::kAttachmentIndex:
+    case Opcode::kMetadataIndex:
+    case Opcode::kSummaryOffset: return true;
+    default: return false;
+  }
+}
+
+std::uint64_t zerosAt(const InputFile& file, std::uint64_t offset, std::uint64_t end) {
+  constexpr std::uint64_t kBlockBytes = 16 << 10;
+  Buffer storage;
+  std::uint64_t at = offset;
+  while (at < end) {
+    const std::span<std::byte> block = storage.resize(static_cast<std::size_t>(std::min(kBlockBytes, end - at)));
+    file.read(at, block);
+    const auto other = std::ranges::find_if(block, [](std::byte one) { return one != std::byte{0}; });
+    at += static_cast<std::uint64_t>(other - block.begin());
+    if (other != block.end()) break;
+  }
+  return at - offset;
+}
 
 bool fits(const InputFile& file, const RecordPlace& place) {
   const std::optional<std::uint64_t> known = knownBytes(file, place);
   if (!known || *known == place.body_length) return known.has_value();
-  return (place.end() == file.size() || beginsRecord(file, place.end(), false)) &&
-         !beginsRecord(file, place.offset + kRecordHeadBytes + *known, true);
+  if (place.end() != file.size() && !beginsRecord(file, place.end(), false)) return false;
+  const std::uint64_t body = place.offset + kRecordHeadBytes, least = leastBytes(place.opcode);
+  const bool is_zero = zerosAt(file, body, body + least) == least;  // its fields are damaged, and not its length
+  return is_zero || !beginsRecord(file, body + *known, true);
 }
 
 bool isFollowed(const InputFile& file, const RecordPlace& place, const std::optional<RecordPlace>& next) {

@@ -17,6 +17,15 @@ template <std::unsigned_integral Number>
   return value;
 }
 
+/// How many zero bytes there are from there on, before `end`.
+[[nodiscard]] std::uint64_t zerosAt(const InputFile& file, std::uint64_t offset, std::uint64_t end);
+
+/// Whether a record of a known kind lies there, whole. @param is_exact  with nothing after its known fields.
+[[nodiscard]] bool beginsRecord(const InputFile& file, std::uint64_t offset, bool is_exact);
+
+/// Whether that is a record of what follows the data, or the footer.
+[[nodiscard]] bool beginsIndex(const InputFile& file, std::uint64_t offset);
+
 /// Whether the lengths in the record there fit one another. That is more than chance gives, so it also distinguishes
 /// such a record from other bytes. A later version of the format may have added fields to a record: then another one
 /// follows its end. Where one follows its known fields, it is the record's own length that is damaged.

@@ -176,8 +176,12 @@ TEST_P(RecoverTest, AHoleInTheMiddleOfACutFileIsSteppedOver) {
                 [&](const Sample& one) { return one.log_time_ns > last_of(0) && one.log_time_ns <= last_of(2); });
   EXPECT_EQ(samples, expected);
   ASSERT_EQ(found.lost.size(), 2U);
+  const RawRecord middle = *std::ranges::find_if(
+      records, [&](const RawRecord& one) { return one.opcode == 0x0C && one.offset > chunks[2].offset; });
+  EXPECT_LT(middle.offset, chunks[3].offset);
   EXPECT_EQ(found.lost[0].offset, chunks[1].offset);
-  EXPECT_EQ(found.lost[0].offset + found.lost[0].length, chunks[3].offset);
+  EXPECT_EQ(found.lost[0].offset + found.lost[0].length, middle.offset);
+  EXPECT_EQ(found.metadata, 3U);
   EXPECT_EQ(found.lost[1].offset, data_end) << "and that it was cut";
 }
 
