@@ -95,17 +95,25 @@ std::string placeOf(const Extent& extent) {
   return (extent.is_chunk ? "chunk at byte " : "records at byte ") + std::to_string(extent.offset);
 }
 
+void BadRecords::add(const std::optional<RecordView>& record, std::size_t at, std::size_t bytes, const char* reason) {
+  has_lost_track = !record;
+  if (record && record->opcode == Opcode::kMessage) ++messages;
+  if (!first.empty()) return;
+  first = (record ? "the " + opcodeName(record->opcode) + " of " + std::to_string(bytes) + " bytes"
+                  : "all of the " + std::to_string(bytes) + " bytes") +
+          " from byte " + std::to_string(at) + " of them on: " + reason;
+}
+
 void readContents(ByteView records, Declarations& declarations, Contents& found) {
   ContentsReader reader(declarations, found);
-  ByteReader in(records);
-  for (std::uint64_t at = 0; const std::optional<RecordView> record = nextRecord(in); at = in.position()) {
-    switch (record->opcode) {
-      case Opcode::kSchema: reader.take(decodeSchema(record->body)); break;
-      case Opcode::kChannel: reader.take(decodeChannel(record->body)); break;
-      case Opcode::kMessage: reader.take(decodeMessage(record->body), at); break;
+  found.bad = forEachRecord(records, [&](const RecordView& record, std::size_t at) {
+    switch (record.opcode) {
+      case Opcode::kSchema: reader.take(decodeSchema(record.body)); break;
+      case Opcode::kChannel: reader.take(decodeChannel(record.body)); break;
+      case Opcode::kMessage: reader.take(decodeMessage(record.body), at); break;
       default: break;
     }
-  }
+  });
   reader.finish();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,17 +10,45 @@
 
 namespace baton::mcap {
 
+/// Records that cannot be read, among others that can.
+struct BadRecords {
+  std::string first{};          // of them: which, where and why; empty when all are sound
+  std::uint64_t messages = 0;   // among them, as far as they can be told
+  bool has_lost_track = false;  // of where the next record begins
+  void add(const std::optional<RecordView>& record, std::size_t at, std::size_t bytes, const char* reason);
+};
+
+/// Gives each record, and where it begins, to use(record, at). One for which that throws FormatError costs itself;
+/// where the next one does not begin, the rest is lost.
+template <class Use>
+[[nodiscard]] BadRecords forEachRecord(ByteView records, Use use) {
+  BadRecords bad;
+  for (std::size_t at = 0, end = 0; at < records.size(); at = end) {
+    std::optional<RecordView> record;
+    try {
+      ByteReader in(records.subspan(at));
+      end = records.size();
+      record = nextRecord(in);
+      end = at + in.position();
+      use(*record, at);
+    } catch (const FormatError& error) {
+      bad.add(record, at, end - at, error.what());
+    }
+  }
+  return bad;
+}
+
 struct Contents {
   Extent extent{};                                  // with the times, channels and meanings of its messages
   std::map<ChannelId, std::uint64_t> counts{};      // of messages, by the channel's id in the index
   std::map<ChannelId, std::uint64_t> undeclared{};  // those that are lost, by the id in the file
   std::map<ChannelId, std::vector<MessageIndex::Entry>> entries{};  // what message indexes have to say, likewise
   std::vector<std::string> contradictions{};                        // see FileInfo
+  BadRecords bad{};
 };
 
-/// Takes the declarations, also when a later record cannot be read, and goes through the messages. One of a channel
-/// that is declared nowhere before it, nor in these records, is lost alone. Throws FormatError at a record that cannot
-/// be read.
+/// Takes the declarations and goes through the messages. One of a channel that is declared nowhere before it, nor in
+/// these records, is lost alone, and so is a record that cannot be read.
 void readContents(ByteView records, Declarations& declarations, Contents& found);
 
 /// "chunk at byte 29".

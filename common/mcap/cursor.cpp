@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "mcap/contents.hpp"
+
 namespace baton::mcap {
 namespace {
 
@@ -101,35 +103,40 @@ void MessageCursor::load(Candidate& candidate) {
 }
 
 void MessageCursor::collect(const Extent& extent, LoadedExtent& loaded) const {
-  ByteReader in(loaded.records);
   std::map<ChannelId, std::optional<ChannelId>> meanings;  // where they are not those of the index
   auto change = extent.meanings.begin();
-  for (std::size_t at = 0; const std::optional<RecordView> record = nextRecord(in); at = in.position()) {
-    if (record->opcode != Opcode::kMessage) continue;
-    const Message message = decodeMessage(record->body);
+  std::string contradiction;  // to the index
+  const BadRecords bad = forEachRecord(loaded.records, [&](const RecordView& record, std::size_t at) {
+    if (record.opcode != Opcode::kMessage) return;
+    const Message message = decodeMessage(record.body);
     for (; change != extent.meanings.end() && change->from <= at; ++change) meanings[change->id] = change->means;
     ChannelId channel = message.channel_id;
     if (const auto other = meanings.find(channel); other != meanings.end()) {
-      if (!other->second) continue;  // it has none, which was reported when the file was indexed
+      if (!other->second) return;  // it has none, which was reported when the file was indexed
       channel = *other->second;
     }
     const auto id = static_cast<std::size_t>(channel);
     if (id >= routes_.size() || routes_[id].channel == nullptr) {
-      throw FormatError("a message belongs to channel " + std::to_string(id) + ", which is not known");
+      contradiction = "a message belongs to channel " + std::to_string(id) + ", which is not known";
+      return;
     }
     // The order of the chunks rests on what their index says.
     if (filter_.order == MessageFilter::Order::kLogTime &&
         (message.log_time_ns < extent.start_time_ns || message.log_time_ns > extent.end_time_ns)) {
-      throw FormatError("a message has log time " + std::to_string(message.log_time_ns) + ", its index says " +
-                        std::to_string(extent.start_time_ns) + " to " + std::to_string(extent.end_time_ns));
+      contradiction = "a message has log time " + std::to_string(message.log_time_ns) + ", its index says " +
+                      std::to_string(extent.start_time_ns) + " to " + std::to_string(extent.end_time_ns);
+      return;
     }
     const bool is_in_time = message.log_time_ns >= filter_.start_time_ns && message.log_time_ns <= filter_.end_time_ns;
-    if (!routes_[id].is_wanted || !is_in_time) continue;
+    if (!routes_[id].is_wanted || !is_in_time) return;
     loaded.entries.push_back({.log_time_ns = message.log_time_ns,
-                              .offset = in.position() - record->body.size(),
-                              .length = record->body.size(),
+                              .offset = at + kRecordHeadBytes,
+                              .length = record.body.size(),
                               .channel = channel});
-  }
+  });
+  if (!contradiction.empty()) throw FormatError(contradiction);
+  // What is left of a damaged chunk was reported when the file was indexed.
+  if (!bad.first.empty() && !loader_.isTolerant()) throw FormatError(bad.first);
   const auto byTime = [](const Entry& a, const Entry& b) { return a.log_time_ns < b.log_time_ns; };
   if (filter_.order == MessageFilter::Order::kLogTime && !std::ranges::is_sorted(loaded.entries, byTime)) {
     std::ranges::stable_sort(loaded.entries, byTime);

@@ -14,21 +14,31 @@ class ExtentLoader {
   /// wrong: run it inside guarded(); and UsageError when the file decompresses to more than the options allow.
   [[nodiscard]] ByteView load(const Extent& extent, Buffer& storage);
 
+  /// Whether the caller wants what is left when something is damaged.
+  [[nodiscard]] bool isTolerant() const { return options_.on_damage != nullptr; }
+
   /// Runs work() on an extent. A FormatError in it goes to options.on_damage (false is returned) or on to the caller,
   /// with the place in the file added.
   template <class Work>
   bool guarded(const Extent& extent, Work work) const {
+    const std::optional<Damage> damage = attempt(extent, work);
+    if (damage) options_.on_damage(*damage);
+    return !damage;
+  }
+
+  /// The same, for a caller who will report the damage that is returned.
+  template <class Work>
+  [[nodiscard]] std::optional<Damage> attempt(const Extent& extent, Work work) const {
     try {
       work();
-      return true;
+      return std::nullopt;
     } catch (const FormatError& error) {
       const std::string what = extent.is_chunk ? "chunk" : "records";
-      if (!options_.on_damage) {
+      if (!isTolerant()) {
         throw FormatError(file_.path().string() + ": " + what + " at byte " + std::to_string(extent.offset) + ": " +
                           error.what());
       }
-      options_.on_damage({.offset = extent.offset, .length = extent.length, .reason = error.what()});
-      return false;
+      return Damage{.offset = extent.offset, .length = extent.length, .reason = error.what()};
     }
   }
 

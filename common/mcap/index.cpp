@@ -306,7 +306,8 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
     tolerant.on_damage = [&damage](const Damage& found) { damage.push_back(found); };
     FileIndex found = scanFile(file, tolerant, &*summary);
     if (options.on_damage) std::ranges::for_each(damage, options.on_damage);
-    const auto lost = std::ranges::find_if(damage, [](const Damage& one) { return one.messages > 0; });
+    const auto lost =
+        std::ranges::find_if(damage, [](const Damage& one) { return one.length == 0 && one.messages > 0; });
     problem.text = !found.info.is_complete ? "its data cannot be followed to their end: " + found.info.problem
                    : lost == damage.end()  ? contradictionOf(*summary, found, !damage.empty())
                                            : "its summary is not that of its data: " + describe(*lost);
@@ -325,10 +326,13 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
 }
 
 std::string describe(const Damage& damage) {
-  if (damage.messages > 0) return std::to_string(damage.messages) + " " + damage.reason;
-  if (damage.length == 0) return "something is missing at byte " + std::to_string(damage.offset) + ": " + damage.reason;
+  const std::string messages = std::to_string(damage.messages);
+  if (damage.length == 0) {
+    return damage.messages > 0 ? messages + " " + damage.reason
+                               : "something is missing at byte " + std::to_string(damage.offset) + ": " + damage.reason;
+  }
   return std::to_string(damage.length) + " bytes at byte " + std::to_string(damage.offset) +
-         " cannot be read: " + damage.reason;
+         (damage.messages > 0 ? ", with " + messages + " messages," : "") + " cannot be read: " + damage.reason;
 }
 
 }  // namespace baton::mcap

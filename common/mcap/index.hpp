@@ -19,7 +19,7 @@ struct Damage {
   std::uint64_t offset = 0;
   std::uint64_t length = 0;  // 0: all bytes could be read, and something is missing there
   std::string reason{};
-  std::uint64_t messages = 0;  // that are lost although their bytes could be read
+  std::uint64_t messages = 0;  // that are lost there, as far as that is known
   auto operator<=>(const Damage&) const = default;
 };
 /// In a sentence: what is lost, where and why.

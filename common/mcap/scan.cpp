@@ -37,7 +37,7 @@ class Scan {
       if (!place) break;
       if (std::exchange(is_first_, false) && takeHeader(*place)) continue;
       if (place->opcode == Opcode::kFooter) {
-        closeRun();
+        settle();
         closeFile(*place);
         const std::uint64_t end = index_.info.complete_bytes, longest_cut = is_closed_ ? 0 : kMagic.size();
         if (goOnWithNextRecording(walk, search_.recordingIn(end, end + longest_cut).value_or(end))) continue;
@@ -52,7 +52,7 @@ class Scan {
         refuseMisplaced(*place);
       }
     }
-    closeRun();
+    settle();
     index_.info.complete_bytes = walk.position();
     index_.info.problem =
         "cut at " +
@@ -64,7 +64,7 @@ class Scan {
   /// Recordings that were joined end to end: the next one begins there. Its ids are its own.
   bool goOnWithNextRecording(RecordWalk& walk, std::uint64_t at) {
     if (at < kMagic.size() + kRecordHeadBytes || !beginsRecording(file_, at)) return false;
-    closeRun();
+    settle();
     if (!std::exchange(is_closed_, false)) noteCut(at);
     index_.info.beginnings.push_back(at);
     index_.info.trailing_bytes = 0;
@@ -145,12 +145,12 @@ class Scan {
     const bool disagrees = place && is_data_ && isTorn(*place);
     std::optional<std::uint64_t> next;
     if (disagrees || !walk.problem().empty()) {
-      next = is_data_ ? search_.dataAfter(from) : search_.recordingIn(from, file_.size());
+      next = is_data_ ? search_.dataAfter(from, has_loose_) : search_.recordingIn(from, file_.size());
     } else if (place) {
       next = recordingInTorn(walk, *place);
     }
     if (!next) return false;
-    closeRun();
+    settle();
     if (is_data_) {  // an index can be made again
       lose({.offset = from, .length = *next - from, .reason = place ? whyTorn(*place, disagrees) : walk.problem()});
     }
@@ -212,6 +212,7 @@ class Scan {
     const bool belongs_to_run = belongsToRun(place.opcode);
     if (!belongs_to_run || run_.length + place.length() > kRunBytes) closeRun();
     if (belongs_to_run) {
+      has_loose_ = has_loose_ || place.opcode == Opcode::kMessage;
       if (run_.length == 0) run_.offset = place.offset;
       run_.length += place.length();
     } else if (place.opcode == Opcode::kChunk) {
@@ -260,32 +261,46 @@ class Scan {
     });
   }
 
+  void settle() {
+    closeChunk();
+    closeRun();
+  }
+
   void closeRun() {
     const Extent run = std::exchange(run_, {.is_chunk = false});
     if (run.length > 0) takeExtent(run);
   }
 
-  /// Learns the schemas and channels of an extent and counts its messages: all of them or, when it is damaged, none.
+  /// Learns the schemas and channels of an extent and counts its messages.
   void takeExtent(const Extent& extent) {
     if (options_.on_progress) options_.on_progress(extent.offset, file_.size());
     Contents found{.extent = extent};
     Extent damaged = extent;
-    const bool is_sound = loader_.guarded(damaged, [&] {
+    std::optional<Damage> loss = loader_.attempt(damaged, [&] {
       try {
         readContents(loader_.load(extent, storage_), declarations_, found);
+        const bool is_torn = found.bad.has_lost_track && recordingBeyond(extent.offset, extent.offset + extent.length);
+        if (!found.bad.first.empty() && (is_torn || !loader_.isTolerant())) throw FormatError(found.bad.first);
       } catch (const FormatError&) {
         if (extent.is_chunk) torn_into_ = recordingBeyond(extent.offset, extent.offset + extent.length);
         if (torn_into_) damaged.length = *torn_into_ - extent.offset;  // the rest is of that recording
         throw;
       }
-      if (!found.undeclared.empty() && !options_.on_damage) throw FormatError(undeclaredIn(found).reason);
+      if (!found.undeclared.empty() && !loader_.isTolerant()) throw FormatError(undeclaredIn(found).reason);
     });
     for (std::string& text : found.contradictions) contradict(std::move(text));
-    if (!is_sound) return;
+    const bool is_lost = loss.has_value(), is_sound = !is_lost && found.bad.first.empty();
+    if (!is_lost && !is_sound) loss = badIn(found);
+    if (is_lost) found.entries.clear();
+    if (extent.is_chunk) {
+      indexed_ = {.chunk = extent, .entries = std::move(found.entries), .loss = loss};
+    } else if (loss) {
+      options_.on_damage(*loss);
+    }
+    if (is_lost) return;
     if (!found.undeclared.empty()) options_.on_damage(undeclaredIn(found));
-    if (extent.is_chunk && !found.counts.empty() && found.undeclared.empty()) checkTimes(found.extent);
-    if (extent.is_chunk) indexed_ = {.chunk = extent, .entries = std::move(found.entries)};
     if (found.counts.empty()) return;
+    if (extent.is_chunk && is_sound && found.undeclared.empty()) checkTimes(found.extent);
     Statistics& statistics = index_.statistics;
     const bool is_first = index_.extents.empty();
     statistics.start_time_ns =
@@ -296,6 +311,12 @@ class Scan {
       statistics.message_count += count;
     }
     index_.extents.push_back(std::move(found.extent));
+  }
+
+  static Damage badIn(const Contents& found) {
+    return {.offset = found.extent.offset,
+            .reason = "messages or records in the " + placeOf(found.extent) + " cannot be read: " + found.bad.first,
+            .messages = found.bad.messages};
   }
 
   static Damage undeclaredIn(const Contents& found) {
@@ -331,6 +352,11 @@ class Scan {
       MessageIndex index = decodeMessageIndex(body);
       std::ranges::sort(index.entries, {}, &MessageIndex::Entry::offset);
       const auto expected = indexed_->entries.extract(index.channel_id);
+      if (indexed_->loss) {
+        const std::size_t read = expected.empty() ? 0 : expected.mapped().size();
+        indexed_->lost_messages += index.entries.size() - std::min(read, index.entries.size());
+        return;
+      }
       if (expected.empty() ? index.entries.empty() : expected.mapped() == index.entries) return;
       contradict("the message index at byte " + std::to_string(place.offset) +
                  " is not that of the messages of channel " + std::to_string(static_cast<unsigned>(index.channel_id)) +
@@ -340,9 +366,18 @@ class Scan {
 
   /// A chunk has no message index at all, or one for each of its channels.
   void closeMessageIndexes() {
-    if (indexed_ && indexed_->has_index && !indexed_->entries.empty()) {
+    if (indexed_ && !indexed_->loss && indexed_->has_index && !indexed_->entries.empty()) {
       contradict("the message indexes after the " + placeOf(indexed_->chunk) + " leave out channel " +
                  std::to_string(static_cast<unsigned>(indexed_->entries.begin()->first)));
+    }
+    closeChunk();
+  }
+
+  /// What a damaged chunk held, its message indexes still say.
+  void closeChunk() {
+    if (indexed_ && indexed_->loss) {
+      indexed_->loss->messages = std::max(indexed_->loss->messages, indexed_->lost_messages);
+      options_.on_damage(*indexed_->loss);
     }
     indexed_.reset();
   }
@@ -389,6 +424,8 @@ class Scan {
     Extent chunk;
     std::map<ChannelId, std::vector<MessageIndex::Entry>> entries{};  // that no message index has listed yet
     bool has_index = false;
+    std::optional<Damage> loss{};  // of all of it, or of some
+    std::uint64_t lost_messages = 0;
   };
 
   const InputFile& file_;
@@ -401,6 +438,7 @@ class Scan {
   bool is_first_ = true;                    // no record of the recording has been read yet
   bool is_data_ = true;                     // and not the end of its data
   bool is_closed_ = false;                  // its footer and its magic have been read
+  bool has_loose_ = false;                  // messages outside of chunks
   std::string cut_;                         // the first recording that has no end, and that another one follows
   std::uint64_t cut_at_ = 0;                // where that one ends
   std::optional<std::uint64_t> torn_into_;  // the recording that begins in the chunk that was just taken

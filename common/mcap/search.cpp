@@ -13,7 +13,7 @@ constexpr std::uint64_t kMostBytes = 4 << 20;
 
 }  // namespace
 
-std::optional<std::uint64_t> Search::dataAfter(std::uint64_t torn) {
+std::optional<std::uint64_t> Search::dataAfter(std::uint64_t torn, bool has_loose) {
   const bool may_hold = mayHoldRecording(file_, torn);
   bool is_inside = false;  // of a recording in an attachment
   std::uint64_t size = kFirstBytes;
@@ -30,14 +30,17 @@ std::optional<std::uint64_t> Search::dataAfter(std::uint64_t torn) {
         is_inside = !is_inside;
       }
       const auto opcode = Opcode{std::to_integer<std::uint8_t>(window[i])};
-      if (!is_inside && mayGoOnAt(from + i, opcode)) return from + i;
+      if (!is_inside && mayGoOnAt(from + i, opcode, has_loose)) return from + i;
     }
   }
   return std::nullopt;
 }
 
 /// Lengths of a few bytes may fit by chance: there the next record must begin, too.
-bool Search::mayGoOnAt(std::uint64_t offset, Opcode opcode) const {
+bool Search::mayGoOnAt(std::uint64_t offset, Opcode opcode, bool has_loose) const {
+  if (opcode == Opcode::kSchema || opcode == Opcode::kChannel || opcode == Opcode::kMessage) {
+    return has_loose && beginsChain(offset);
+  }
   const bool is_long = opcode == Opcode::kChunk || opcode == Opcode::kAttachment;
   if (!is_long && opcode != Opcode::kMetadata && opcode != Opcode::kDataEnd) return false;
   const RecordPlace place{
@@ -45,6 +48,16 @@ bool Search::mayGoOnAt(std::uint64_t offset, Opcode opcode) const {
   if (place.body_length >= file_.size() || place.end() > file_.size() || !fits(file_, place)) return false;
   if (opcode == Opcode::kMetadata) return beginsRecord(file_, place.end(), false);
   return is_long || (place.body_length == leastBytes(opcode) && beginsIndex(file_, place.end()));
+}
+
+/// Messages have no shape but their length: it has to lead to another record, and that to a third.
+bool Search::beginsChain(std::uint64_t offset) const {
+  constexpr int kRecords = 3;
+  for (int i = 0; i < kRecords; ++i) {
+    if (!beginsRecord(file_, offset, false)) return false;
+    offset += kRecordHeadBytes + numberAt<std::uint64_t>(file_, offset + 1);
+  }
+  return true;
 }
 
 std::optional<std::uint64_t> Search::recordingBeyond(std::uint64_t record, std::uint64_t end) {

@@ -16,7 +16,9 @@ class Search {
   /// there. A recording that is attached to this one has chunks that are not of this one: attachments are found whole,
   /// and of one whose own beginning is damaged the magic tells. Two magics are the end of this recording and the
   /// beginning of another that was joined to it; one is when what is torn holds no recording.
-  [[nodiscard]] std::optional<std::uint64_t> dataAfter(std::uint64_t torn);
+  /// @param has_loose  the recording has messages outside of chunks: where several records follow one another the first
+  /// of them may be one, too.
+  [[nodiscard]] std::optional<std::uint64_t> dataAfter(std::uint64_t torn, bool has_loose);
 
   /// The first recording that begins from one byte on and before the other.
   [[nodiscard]] std::optional<std::uint64_t> recordingIn(std::uint64_t from, std::uint64_t end);
@@ -27,7 +29,8 @@ class Search {
  private:
   template <class Use>
   void forEachMagic(std::uint64_t from, std::uint64_t end, Use use);
-  [[nodiscard]] bool mayGoOnAt(std::uint64_t offset, Opcode opcode) const;
+  [[nodiscard]] bool mayGoOnAt(std::uint64_t offset, Opcode opcode, bool has_loose) const;
+  [[nodiscard]] bool beginsChain(std::uint64_t offset) const;
 
   const InputFile& file_;
   Buffer storage_;

@@ -104,6 +104,105 @@ TEST_F(SalvageTest, AMessageOfAnUndeclaredChannelCostsItselfAlone) {
   }
 }
 
+TEST_F(SalvageTest, ABadRecordCostsItselfAndNotItsChunk) {
+  for (const std::uint8_t opcode : {std::uint8_t{0x03}, std::uint8_t{0x04}, std::uint8_t{0x05}}) {
+    IndexedFile file;
+    file.channel(channelOf(1, "a"));
+    file.message(1, 1);
+    FileBuilder::rawRecord(file.records, opcode, payload(5, 7));  // too short for any of them
+    file.message(1, 2);
+    file.closeChunk();
+    file.message(1, 3);
+    file.closeChunk();
+    for (const bool is_cut : {true, false}) {
+      SCOPED_TRACE(std::to_string(opcode) + (is_cut ? ", cut" : ""));
+      damage.clear();
+      saveFile(path, is_cut ? file.cut() : file.finished());
+      EXPECT_EQ(logTimesOf(Reader(path, tolerant())), (std::vector<std::uint64_t>{1, 2, 3}));
+      ASSERT_EQ(damage.size(), 1U);
+      EXPECT_EQ(damage[0].messages, opcode == 0x05 ? 1U : 0U);
+      EXPECT_NE(describe(damage[0]).find("in the chunk at byte " + std::to_string(file.chunks[0].chunk_offset)),
+                std::string::npos)
+          << describe(damage[0]);
+      EXPECT_NE(describe(damage[0]).find("of 14 bytes from byte"), std::string::npos) << describe(damage[0]);
+      if (is_cut || opcode == 0x05) {  // otherwise no message is missing, and the summary has the declarations
+        EXPECT_THROW((void)logTimesOf(Reader(path)), FormatError);
+      }
+    }
+  }
+}
+
+TEST_F(SalvageTest, ABadLengthInAChunkCostsWhatFollowsIt) {
+  IndexedFile file;
+  file.channel(channelOf(1, "a"));
+  file.message(1, 1);
+  const std::size_t bad = file.records.size();
+  for (std::uint64_t time = 2; time < 5; ++time) file.message(1, time);
+  file.records[bad + 4] = std::byte{1};  // 16 MiB
+  file.closeChunk();
+  file.message(1, 5);
+  file.closeChunk();
+  for (const bool is_cut : {true, false}) {
+    SCOPED_TRACE(is_cut);
+    damage.clear();
+    saveFile(path, is_cut ? file.cut() : file.finished());
+    EXPECT_EQ(logTimesOf(Reader(path, tolerant())), (std::vector<std::uint64_t>{1, 5}));
+    ASSERT_EQ(damage.size(), 1U);
+    EXPECT_EQ(damage[0].messages, 3U) << "the message index has them: " << describe(damage[0]);
+    EXPECT_NE(describe(damage[0]).find("all of the 93 bytes from byte " + std::to_string(bad)), std::string::npos)
+        << describe(damage[0]);
+    EXPECT_THROW((void)logTimesOf(Reader(path)), FormatError);
+  }
+}
+
+TEST_F(SalvageTest, ALostChunkSaysHowManyMessagesItHeld) {
+  IndexedFile file;
+  file.channel(channelOf(1, "a"));
+  file.channel(channelOf(2, "b"));
+  for (std::uint64_t time = 1; time < 8; ++time) file.message(time % 3 == 0 ? 2 : 1, time);
+  file.closeChunk();
+  const ChunkIndex chunk = file.chunks[0];
+  for (const bool is_cut : {true, false}) {
+    damage.clear();
+    Bytes bytes = is_cut ? file.cut() : file.finished();
+    bytes[chunk.chunk_offset + chunk.chunk_length - 1] ^= std::byte{1};
+    saveFile(path, bytes);
+    EXPECT_TRUE(logTimesOf(Reader(path, tolerant())).empty());
+    ASSERT_EQ(damage.size(), 1U);
+    EXPECT_EQ(damage[0].messages, 7U);
+    EXPECT_EQ(damage[0].length, chunk.chunk_length);
+  }
+}
+
+TEST_F(SalvageTest, ABadRecordOutsideOfChunksCostsItselfAlone) {
+  const auto write = [](std::uint64_t bad, const std::function<void(Bytes&, std::size_t)>& harm) {
+    FileBuilder file;
+    appendChannel(file.bytes, channelOf(1, "a"));
+    for (std::uint64_t time = 1; time < 9; ++time) {
+      const std::size_t begin = file.bytes.size();
+      appendMessage(file.bytes, {.channel_id = ChannelId{1}, .log_time_ns = time, .data = asBytes("0123456789")});
+      if (time == bad) harm(file.bytes, begin);
+    }
+    file.finish();
+    return file.bytes;
+  };
+  const auto shorten = [](Bytes& bytes, std::size_t begin) {  // a message of 5 bytes
+    bytes.resize(begin);
+    FileBuilder::rawRecord(bytes, 0x05, payload(5, 1));
+  };
+  const auto zero = [](Bytes& bytes, std::size_t begin) {
+    std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(begin), bytes.end(), std::byte{0});
+  };
+  const auto lengthen = [](Bytes& bytes, std::size_t begin) { bytes[begin + 5] = std::byte{1}; };
+  for (const auto& harm : {std::function<void(Bytes&, std::size_t)>(shorten), {zero}, {lengthen}}) {
+    damage.clear();
+    saveFile(path, write(4, harm));
+    EXPECT_EQ(logTimesOf(Reader(path, tolerant())), (std::vector<std::uint64_t>{1, 2, 3, 5, 6, 7, 8}));
+    EXPECT_EQ(damage.size(), 1U);
+    EXPECT_THROW((void)logTimesOf(Reader(path)), FormatError);
+  }
+}
+
 TEST_F(SalvageTest, ASummaryDeclaresWhatADamagedChunkDeclared) {
   IndexedFile file;
   file.channel(channelOf(1, "a"));
