@@ -95,12 +95,12 @@ std::string placeOf(const Extent& extent) {
   return (extent.is_chunk ? "chunk at byte " : "records at byte ") + std::to_string(extent.offset);
 }
 
-void BadRecords::add(const std::optional<RecordView>& record, std::size_t at, std::size_t bytes, const char* reason) {
-  has_lost_track = !record;
-  if (record && record->opcode == Opcode::kMessage) ++messages;
+void BadRecords::add(const RecordView* record, std::size_t at, std::size_t bytes, const char* reason) {
+  has_lost_track = record == nullptr;
+  if (record != nullptr && record->opcode == Opcode::kMessage) ++messages;
   if (!first.empty()) return;
-  first = (record ? "the " + opcodeName(record->opcode) + " of " + std::to_string(bytes) + " bytes"
-                  : "all of the " + std::to_string(bytes) + " bytes") +
+  first = (record != nullptr ? "the " + opcodeName(record->opcode) + " of " + std::to_string(bytes) + " bytes"
+                             : "all of the " + std::to_string(bytes) + " bytes") +
           " from byte " + std::to_string(at) + " of them on: " + reason;
 }
 

@@ -15,7 +15,7 @@ struct BadRecords {
   std::string first{};          // of them: which, where and why; empty when all are sound
   std::uint64_t messages = 0;   // among them, as far as they can be told
   bool has_lost_track = false;  // of where the next record begins
-  void add(const std::optional<RecordView>& record, std::size_t at, std::size_t bytes, const char* reason);
+  void add(const RecordView* record, std::size_t at, std::size_t bytes, const char* reason);
 };
 
 /// Gives each record, and where it begins, to use(record, at). One for which that throws FormatError costs itself;
@@ -25,14 +25,16 @@ template <class Use>
   BadRecords bad;
   for (std::size_t at = 0, end = 0; at < records.size(); at = end) {
     std::optional<RecordView> record;
+    const RecordView* whole = nullptr;  // GCC may have written into `record` by the time nextRecord() throws
     try {
       ByteReader in(records.subspan(at));
       end = records.size();
       record = nextRecord(in);
       end = at + in.position();
-      use(*record, at);
+      whole = &*record;
+      use(*whole, at);
     } catch (const FormatError& error) {
-      bad.add(record, at, end - at, error.what());
+      bad.add(whole, at, end - at, error.what());
     }
   }
   return bad;

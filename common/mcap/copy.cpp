@@ -7,14 +7,32 @@
 namespace baton::mcap {
 namespace {
 
-/// work(), and what keeps it from reading a record there.
+/// work(), and what keeps it from reading a record there, unless that is known.
 template <class Work>
 void guard(std::set<Damage>& losses, std::uint64_t offset, std::uint64_t length, Work work) {
   try {
     work();
   } catch (const FormatError& error) {
+    const auto known = losses.lower_bound({.offset = offset});
+    if (known != losses.end() && known->offset == offset) return;
     losses.insert({.offset = offset, .length = length, .reason = error.what()});
   }
+}
+
+/// What a summary counts and the data do not have is lost, too; where nothing is lost it is the summary that is wrong.
+void count(const Reader& reader, Recovery& result) {
+  result.lost_bytes = lengthOf(result.lost);
+  for (const Damage& one : result.lost) {
+    result.lost_messages += one.messages;
+    result.lost_chunks += one.chunks;
+  }
+  if (result.lost.empty() || !result.info.claimed) return;
+  const auto raise = [](std::uint64_t& lost, std::uint64_t claimed, std::uint64_t there) {
+    lost = std::max(lost, claimed - std::min(claimed, there));
+  };
+  raise(result.lost_messages, result.info.claimed->message_count, result.messages);
+  const std::uint64_t met = reader.statistics().chunk_count;
+  raise(result.lost_chunks, result.info.claimed->chunk_count, met - std::min(met, result.lost_chunks));
 }
 
 }  // namespace
@@ -115,9 +133,10 @@ Recovery recover(const std::filesystem::path& in, const std::filesystem::path& o
   result.attachments = attachments.size();
   result.metadata = metadata.size();
   result.lost.assign(losses.begin(), losses.end());
+  count(reader, result);
   result.is_changed = !is_as_written;
   result.is_whole = result.lost.empty() && is_as_written && result.info.is_complete && result.info.problem.empty() &&
-                    result.info.contradictions.empty();
+                    result.info.contradictions.empty() && result.info.unknown_records == 0;
   return result;
 }
 

@@ -46,11 +46,14 @@ class Copier {
 
 /// What recover() found and did.
 struct Recovery {
-  FileInfo info{};             // of the file that was read
-  std::vector<Damage> lost{};  // by place: what could not be read; empty when nothing was lost
-  bool is_changed = false;     // bytes are not as they were written, by the CRC of the data: something may be lost
-  bool is_whole = false;       // nothing was lost, and no byte is another than was written
-  std::uint64_t messages = 0;  // in the copy, as what follows
+  FileInfo info{};                  // of the file that was read
+  std::vector<Damage> lost{};       // by place: what could not be read; empty when nothing was lost
+  std::uint64_t lost_bytes = 0;     // of the file, that could not be read
+  std::uint64_t lost_messages = 0;  // at least: by what is left of the indexes
+  std::uint64_t lost_chunks = 0;    // likewise
+  bool is_changed = false;          // bytes are not as they were written, by the CRC of the data: something may be lost
+  bool is_whole = false;            // nothing was lost or left out, and no byte is another than was written
+  std::uint64_t messages = 0;       // in the copy, as what follows
   std::uint64_t attachments = 0;
   std::uint64_t metadata = 0;
 };

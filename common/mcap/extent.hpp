@@ -38,7 +38,10 @@ class ExtentLoader {
         throw FormatError(file_.path().string() + ": " + what + " at byte " + std::to_string(extent.offset) + ": " +
                           error.what());
       }
-      return Damage{.offset = extent.offset, .length = extent.length, .reason = error.what()};
+      return Damage{.offset = extent.offset,
+                    .length = extent.length,
+                    .reason = error.what(),
+                    .chunks = extent.is_chunk ? std::uint64_t{1} : 0};
     }
   }
 

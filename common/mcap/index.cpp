@@ -189,7 +189,8 @@ ByteView readBody(const InputFile& file, const RecordPlace& place, const ReaderO
   return body;
 }
 
-std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions& options, SummaryProblem& problem) {
+std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions& options, SummaryProblem& problem,
+                                     std::optional<Statistics>* claimed) {
   if (file.size() < kMagic.size() + kTailBytes) return std::nullopt;
   const std::uint64_t footer_at = file.size() - kTailBytes;
   std::array<std::byte, kTailBytes> tail;
@@ -238,6 +239,7 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
         case Opcode::kStatistics:
           index.statistics = decodeStatistics(record->body);
           has_statistics = true;
+          if (claimed != nullptr) *claimed = index.statistics;
           break;
         case Opcode::kChunkIndex: {
           const ChunkIndex chunk = decodeChunkIndex(record->body);
@@ -297,7 +299,8 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
     throw FormatError(file.path().string() + " is not an MCAP recording: " + whatBeginsWith(beginOf(file)));
   }
   SummaryProblem problem;
-  const std::optional<FileIndex> summary = readSummary(file, options, problem);
+  std::optional<Statistics> claimed;
+  std::optional<FileIndex> summary = readSummary(file, options, problem, &claimed);
   if (summary && options.trusts_summary) return *summary;
   if (summary) {
     // Read all of it: only then is it known that no chunk holds other messages than the summary says.
@@ -311,18 +314,35 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
     problem.text = !found.info.is_complete ? "its data cannot be followed to their end: " + found.info.problem
                    : lost == damage.end()  ? contradictionOf(*summary, found, !damage.empty())
                                            : "its summary is not that of its data: " + describe(*lost);
-    if (problem.text.empty()) return *summary;
+    found.info.claimed = claimed;
+    if (problem.text.empty()) {
+      summary->info.claimed = claimed;
+      summary->info.unknown_records = found.info.unknown_records;
+      return *std::move(summary);
+    }
     if (options.on_damage || damage.empty()) {
       if (found.info.problem.empty()) found.info.problem = problem.text;
       return found;
     }
   }
   FileIndex index = scanFile(file, options, summary ? &*summary : nullptr);
+  index.info.claimed = std::move(claimed);
   if (index.info.problem.empty()) {
     index.info.problem = problem.text;
     index.info.is_unindexed = problem.is_omission;
   }
   return index;
+}
+
+std::uint64_t lengthOf(const std::vector<Damage>& damage) {
+  std::uint64_t sum = 0, end = 0;
+  for (const Damage& one : damage) {
+    const std::uint64_t begin = std::max(end, one.offset), one_end = one.offset + one.length;
+    if (one_end <= begin) continue;
+    sum += one_end - begin;
+    end = one_end;
+  }
+  return sum;
 }
 
 std::string describe(const Damage& damage) {

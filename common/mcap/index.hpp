@@ -20,10 +20,13 @@ struct Damage {
   std::uint64_t length = 0;  // 0: all bytes could be read, and something is missing there
   std::string reason{};
   std::uint64_t messages = 0;  // that are lost there, as far as that is known
+  std::uint64_t chunks = 0;    // likewise, whole
   auto operator<=>(const Damage&) const = default;
 };
 /// In a sentence: what is lost, where and why.
 [[nodiscard]] std::string describe(const Damage& damage);
+/// Of all of it, in bytes of the file; what overlaps counts once. @param damage  in the order of the file.
+[[nodiscard]] std::uint64_t lengthOf(const std::vector<Damage>& damage);
 
 struct ReaderOptions {
   /// Records and decompressed chunks above this are refused: no damaged length can exhaust the memory.
@@ -62,6 +65,8 @@ struct FileInfo {
   std::vector<std::string> contradictions{};
   std::vector<Damage> cuts{};  // where data of a recording in the file end too early, or bytes follow that are of none
   std::vector<std::uint64_t> beginnings{0};  // of recordings in the file: several, when files were joined
+  std::uint64_t unknown_records = 0;         // of kinds that MCAP does not know
+  std::optional<Statistics> claimed{};       // by its summary, whether the data agree or not
 };
 
 /// A stretch of the file that holds messages: a chunk, or consecutive records outside of any chunk.
@@ -104,8 +109,10 @@ struct SummaryProblem {
 };
 
 /// The two ways, for indexFile: nothing when the file has no summary or one that cannot be used, `problem` says why.
+/// @param claimed  its statistics, also when it cannot be used.
 [[nodiscard]] std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions& options,
-                                                   SummaryProblem& problem);
+                                                   SummaryProblem& problem,
+                                                   std::optional<Statistics>* claimed = nullptr);
 /// @param summary  declares the channels that the data do not declare; may be null.
 [[nodiscard]] FileIndex scanFile(const InputFile& file, const ReaderOptions& options,
                                  const FileIndex* summary = nullptr);

@@ -152,7 +152,10 @@ class Scan {
     if (!next) return false;
     settle();
     if (is_data_) {  // an index can be made again
-      lose({.offset = from, .length = *next - from, .reason = place ? whyTorn(*place, disagrees) : walk.problem()});
+      lose({.offset = from,
+            .length = *next - from,
+            .reason = place ? whyTorn(*place, disagrees) : walk.problem(),
+            .chunks = place && place->opcode == Opcode::kChunk ? std::uint64_t{1} : 0});
     }
     walk.moveTo(*next);
     return true;
@@ -235,11 +238,14 @@ class Scan {
   void noteHiddenChunk(const RecordPlace& place) {
     if (place.opcode != Opcode::kMessageIndex) {
       const bool is_known = place.opcode <= Opcode::kDataEnd;
+      if (!is_known) ++index_.info.unknown_records;
       hidden_ = is_known || previous_ == Opcode::kChunk ? std::nullopt : std::optional(place);
     } else if (hidden_ && options_.on_damage) {
       options_.on_damage({.offset = hidden_->offset,
                           .length = hidden_->length(),
-                          .reason = "it is indexed as a chunk, and is of no known kind"});
+                          .reason = "it is indexed as a chunk, and is of no known kind",
+                          .chunks = 1});
+      --index_.info.unknown_records;
       hidden_.reset();
     }
     previous_ = place.opcode;

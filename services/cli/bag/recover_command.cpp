@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "bag/copy_target.hpp"
 #include "bag/subcommands.hpp"
@@ -19,42 +20,48 @@ struct RecoverRequest {
   bool json = false;
 };
 
-std::uint64_t sumOf(const std::vector<mcap::Damage>& lost, std::uint64_t mcap::Damage::*what) {
-  std::uint64_t sum = 0;
-  for (const mcap::Damage& damage : lost) sum += damage.*what;
-  return sum;
+/// "3 chunks and 120 messages"; empty for none.
+std::string countsOf(const mcap::Recovery& found) {
+  std::string text;
+  for (const auto& [count, what] : {std::pair(found.lost_chunks, "chunk"), {found.lost_messages, "message"}}) {
+    if (count == 0) continue;
+    text += fmt::format("{}{} {}{}", text.empty() ? "" : " and ", count, what, count == 1 ? "" : "s");
+  }
+  return text;
 }
-
-std::uint64_t bytesOf(const std::vector<mcap::Damage>& lost) { return sumOf(lost, &mcap::Damage::length); }
-std::uint64_t messagesOf(const std::vector<mcap::Damage>& lost) { return sumOf(lost, &mcap::Damage::messages); }
 
 /// What the input was, in a sentence.
 std::string verdictOn(const mcap::Recovery& found) {
-  if (const std::uint64_t messages = messagesOf(found.lost); messages > 0) {
-    return fmt::format("{} of its bytes could not be read, and {} messages more are lost", bytesOf(found.lost),
-                       messages);
+  const std::string counts = countsOf(found);
+  if (found.lost_bytes > 0) {
+    return fmt::format("{} of its bytes could not be read{}", found.lost_bytes,
+                       counts.empty() ? "" : ": at least " + counts + " are lost");
   }
-  if (const std::uint64_t bytes = bytesOf(found.lost); bytes > 0) {
-    return fmt::format("{} of its bytes could not be read", bytes);
+  if (!found.lost.empty()) {
+    return "all of its bytes could be read, and " + (counts.empty() ? "something is missing" : counts + " are lost");
   }
-  if (!found.lost.empty()) return "all of its bytes could be read, and something is missing";
   if (found.is_whole) return "it was whole, and is copied";
   if (found.is_changed)
     return "bytes between its chunks were changed, as the CRC of its data says: something may be lost";
   if (!found.info.contradictions.empty()) return "all of it could be read, and is copied as its data have it";
+  if (found.info.problem.empty()) return "all of it could be read, and is copied but for what MCAP does not know";
   return "nothing was lost, it has its index again: " + found.info.problem;
 }
 
 void printText(const RecoverRequest& request, const mcap::Recovery& found) {
   sayf("{}: {}\n", request.in, escaped(verdictOn(found)));
   for (const mcap::Damage& damage : found.lost) {
-    if (damage.messages > 0 || damage.length == 0) {
+    if (damage.length == 0) {
       sayf("lost        {}\n", escaped(mcap::describe(damage)));
     } else {
-      sayf("lost        {} bytes from byte {} on: {}\n", damage.length, damage.offset, escaped(damage.reason));
+      sayf("lost        {} bytes from byte {} on{}: {}\n", damage.length, damage.offset,
+           damage.messages > 0 ? fmt::format(", with {} messages", damage.messages) : "", escaped(damage.reason));
     }
   }
   for (const std::string& note : found.info.contradictions) sayf("note        {}\n", escaped(note));
+  if (found.info.unknown_records > 0) {
+    sayf("left out    {} records of kinds that MCAP does not know\n", found.info.unknown_records);
+  }
   sayf("recovered   {}: {} messages, {} attachments, {} metadata records\n", request.out.file, found.messages,
        found.attachments, found.metadata);
 }
@@ -65,15 +72,21 @@ nlohmann::ordered_json toJson(const RecoverRequest& request, const mcap::Recover
     lost.push_back({{"from_B", damage.offset},
                     {"length_B", damage.length},
                     {"messages", damage.messages},
+                    {"chunks", damage.chunks},
                     {"reason", damage.reason}});
   }
   return {{"file", request.in},
           {"out", request.out.file},
           {"whole", found.is_whole},
           {"verdict", verdictOn(found)},
-          {"lost_B", bytesOf(found.lost)},
+          {"lost_B", found.lost_bytes},
           {"lost", lost},
-          {"lost_messages", messagesOf(found.lost)},
+          {"lost_messages", found.lost_messages},
+          {"left_out",
+           {{"size_B", found.lost_bytes},
+            {"messages", found.lost_messages},
+            {"chunks", found.lost_chunks},
+            {"unknown_records", found.info.unknown_records}}},
           {"notes", found.info.contradictions},
           {"messages", found.messages},
           {"attachments", found.attachments},

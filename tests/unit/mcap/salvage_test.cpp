@@ -174,6 +174,44 @@ TEST_F(SalvageTest, ALostChunkSaysHowManyMessagesItHeld) {
   }
 }
 
+TEST_F(SalvageTest, RecoverCountsWhatIsLostAndLeftOut) {
+  IndexedFile file;
+  for (std::uint64_t chunk = 0; chunk < 5; ++chunk) {
+    file.channel(channelOf(1, "a"));
+    for (std::uint64_t i = 0; i <= chunk; ++i) file.message(1, 10 * chunk + i);
+    file.closeChunk();
+    if (chunk == 3) file.attachment("notes.txt", "hello");
+    if (chunk == 0) FileBuilder::rawRecord(file.data, 0x90, asBytes("somebody's own"));
+  }
+  const auto& [one, two, three] = std::tie(file.chunks[1], file.chunks[2], file.chunks[3]);
+  for (const bool is_cut : {true, false}) {
+    SCOPED_TRACE(is_cut);
+    Bytes bytes = is_cut ? file.cut() : file.finished();
+    bytes[one.chunk_offset + one.chunk_length - 1] ^= std::byte{1};  // two messages
+    std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(two.chunk_offset),
+              bytes.begin() + static_cast<std::ptrdiff_t>(three.chunk_offset), std::byte{0});  // three, and their index
+    bytes[file.attachments[0].offset + kRecordHeadBytes + 16 + 3] = std::byte{0x40};           // the length of its name
+    saveFile(path, bytes);
+    RecoverOptions options;
+    options.writer.if_exists = OutputFile::IfExists::kReplace;
+    const Recovery found = recover(path, folder.file("out.mcap"), options);
+    const std::uint64_t of_cut = is_cut ? 1 : 0;  // and that it was cut
+    ASSERT_EQ(found.lost.size(), 3U + of_cut);
+    EXPECT_EQ(found.messages, 10U);
+    EXPECT_EQ(found.attachments, 0U);
+    EXPECT_EQ(found.lost_messages, is_cut ? 2U : 5U) << "of the others nothing is left";
+    EXPECT_EQ(found.lost_chunks, is_cut ? 1U : 2U);
+    EXPECT_EQ(found.lost_bytes, one.chunk_length + three.chunk_offset - two.chunk_offset + file.attachments[0].length);
+    EXPECT_EQ(found.info.unknown_records, 1U);
+    EXPECT_FALSE(found.is_whole);
+  }
+}
+
+TEST_F(SalvageTest, StretchesThatOverlapCountOnce) {
+  EXPECT_EQ(lengthOf({{.offset = 10, .length = 10}, {.offset = 12, .length = 3}, {.offset = 15, .length = 10}}), 15U);
+  EXPECT_EQ(lengthOf({{.offset = 10, .length = 0}, {.offset = 12, .length = 3}}), 3U);
+}
+
 TEST_F(SalvageTest, ABadRecordOutsideOfChunksCostsItselfAlone) {
   const auto write = [](std::uint64_t bad, const std::function<void(Bytes&, std::size_t)>& harm) {
     FileBuilder file;
