@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
+#include <utility>
 
 #include "mcap/crc.hpp"
 #include "mcap/shape.hpp"
@@ -121,6 +123,7 @@ SummaryProblem inconsistency(const FileIndex& index, bool has_statistics) {
     return incomplete("attachment", index.attachments.size());
   if (statistics.metadata_count != index.metadata.size()) return incomplete("metadata record", index.metadata.size());
   if (statistics.channel_count != index.channels.size()) return incomplete("channel", index.channels.size());
+  if (statistics.schema_count != index.schemas.size()) return incomplete("schema", index.schemas.size());
   std::uint64_t counted = 0;
   for (const auto& [id, count] : statistics.channel_message_counts) {
     if (!index.channels.contains(id)) return {"its summary counts messages of a channel it does not list"};
@@ -135,6 +138,30 @@ SummaryProblem inconsistency(const FileIndex& index, bool has_statistics) {
   if (statistics.chunk_count == 0 && statistics.message_count != 0) return {"its messages are not indexed", true};
   return {};
 }
+
+/// Where the records of a summary lie, by kind.
+class Groups {
+ public:
+  void add(Opcode opcode, std::uint64_t begin, std::uint64_t end) {
+    groups_.try_emplace(opcode, begin, end).first->second.second = end;
+  }
+  /// What is wrong with the summary's own index; empty when nothing is.
+  [[nodiscard]] std::string problem(const std::vector<SummaryOffset>& offsets, std::uint64_t offsets_start) const {
+    for (const SummaryOffset& one : offsets) {
+      const auto group = groups_.find(one.group);
+      const auto [begin, end] = group == groups_.end() ? std::pair<std::uint64_t, std::uint64_t>{} : group->second;
+      if (group != groups_.end() && begin == one.group_start && end - begin == one.group_length) continue;
+      return "its summary gives " + std::to_string(one.group_length) + " bytes at byte " +
+             std::to_string(one.group_start) + " for its records " + opcodeName(one.group) + ", which are not those";
+    }
+    const auto group = groups_.find(Opcode::kSummaryOffset);
+    if (offsets_start == (group == groups_.end() ? 0 : group->second.first)) return "";
+    return "its footer gives byte " + std::to_string(offsets_start) + " for the offsets in its summary, which is wrong";
+  }
+
+ private:
+  std::map<Opcode, std::pair<std::uint64_t, std::uint64_t>> groups_;
+};
 
 }  // namespace
 
@@ -222,9 +249,14 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
 
     FileIndex index;
     std::vector<Piece> pieces;
+    std::vector<ChunkIndex> chunks;
+    std::vector<SummaryOffset> offsets;
+    Groups groups;
     bool has_statistics = false;
     ByteReader in(bytes.first(static_cast<std::size_t>(footer_at - footer.summary_start)));
-    while (const std::optional<RecordView> record = nextRecord(in)) {
+    for (std::uint64_t at = footer.summary_start; const std::optional<RecordView> record = nextRecord(in);) {
+      const std::uint64_t end = footer.summary_start + in.position();
+      groups.add(record->opcode, std::exchange(at, end), end);
       switch (record->opcode) {
         case Opcode::kSchema: {
           Schema schema = decodeSchema(record->body);
@@ -253,6 +285,7 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
                             .kind = Opcode::kChunk,
                             .indexes_length = chunk.message_index_length});
           index.extents.push_back(std::move(extent));
+          chunks.push_back(chunk);
           break;
         }
         case Opcode::kAttachmentIndex:
@@ -267,6 +300,7 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
                             .length = index.metadata.back().length,
                             .kind = Opcode::kMetadata});
           break;
+        case Opcode::kSummaryOffset: offsets.push_back(decodeSummaryOffset(record->body)); break;
         case Opcode::kMessage:
         case Opcode::kChunk:
         case Opcode::kAttachment:
@@ -283,6 +317,12 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
     if (!first || first->opcode != Opcode::kHeader) return std::nullopt;  // the scan says so
     index.info.header = decodeHeader(readBody(file, *first, options, storage));
     if (!coversData(file, std::move(pieces), first->end(), footer.summary_start, problem)) return std::nullopt;
+    // What is of use to others only is nothing to those who look at the metadata.
+    if (!options.trusts_summary) problem.text = groups.problem(offsets, footer.summary_offset_start);
+    for (auto one = chunks.begin(); one != chunks.end() && !options.trusts_summary && problem.text.empty(); ++one) {
+      problem.text = problemOf(file, *one);
+    }
+    if (!problem.text.empty()) return std::nullopt;
     index.info.file_bytes = index.info.complete_bytes = file.size();
     index.info.is_complete = index.info.has_all_data = index.info.has_summary = true;
     return index;

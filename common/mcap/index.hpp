@@ -121,6 +121,9 @@ struct SummaryProblem {
 /// @param is_damaged  the scan could not read all of the data, so that it may have found less than there was.
 [[nodiscard]] std::string contradictionOf(const FileIndex& summary, const FileIndex& found, bool is_damaged);
 
+/// Where others would look for a chunk and its messages in vain, by its index, in a sentence; empty when all is there.
+[[nodiscard]] std::string problemOf(const InputFile& file, const ChunkIndex& index);
+
 /// A record's place in the file.
 struct RecordPlace {
   Opcode opcode{};

@@ -5,6 +5,7 @@
 
 #include "mcap/contents.hpp"
 #include "mcap/index.hpp"
+#include "mcap/shape.hpp"
 
 namespace baton::mcap {
 namespace {
@@ -85,7 +86,48 @@ bool isSame(const AttachmentIndex& a, const AttachmentIndex& b) {
   return fields(a) == fields(b);
 }
 
+/// What a chunk's head says: "lz4, 100 bytes of 200".
+std::string packingOf(const std::string& compression, std::uint64_t packed_size, std::uint64_t plain_size) {
+  return (compression.empty() ? "not compressed" : compression) + ", " + std::to_string(packed_size) + " bytes of " +
+         std::to_string(plain_size);
+}
+
 }  // namespace
+
+std::string problemOf(const InputFile& file, const ChunkIndex& index) {
+  const std::string begin = "its summary's index of the chunk at byte " + std::to_string(index.chunk_offset);
+  const std::uint64_t body = index.chunk_offset + kRecordHeadBytes, name_at = body + 8 + 8 + 8 + 4 + 4;
+  std::string name(static_cast<std::size_t>(std::min<std::uint64_t>(numberAt<std::uint32_t>(file, name_at - 4), 64)),
+                   '\0');
+  if (name.size() <= file.size() - std::min(file.size(), name_at)) {
+    file.read(name_at, std::as_writable_bytes(std::span(name)));
+  }
+  const std::string packing = packingOf(index.compression, index.packed_size, index.plain_size);
+  const std::string found =
+      packingOf(name, numberAt<std::uint64_t>(file, name_at + name.size()), numberAt<std::uint64_t>(file, body + 16));
+  if (packing != found) return begin + " says " + packing + ", the chunk says " + found;
+
+  const std::uint64_t indexes_at = index.chunk_offset + index.chunk_length;
+  RecordWalk walk(file, indexes_at, file.size());
+  std::map<std::uint64_t, ChannelId> there;  // by place
+  while (walk.position() < indexes_at + index.message_index_length) {
+    const std::optional<RecordPlace> place = walk.next();
+    if (!place || place->opcode != Opcode::kMessageIndex) break;
+    there[place->offset] =
+        ChannelId{static_cast<std::uint16_t>(numberAt<std::uint16_t>(file, place->offset + kRecordHeadBytes))};
+  }
+  for (const auto& [id, offset] : index.message_index_offsets) {
+    const auto one = there.find(offset);
+    if (one != there.end() && one->second == id) continue;
+    return begin + " gives byte " + std::to_string(offset) + " for the messages of channel " +
+           std::to_string(static_cast<unsigned>(id)) + ", where their index is not";
+  }
+  const std::optional<RecordPlace> next = walk.peek();
+  if (walk.position() == indexes_at + index.message_index_length && (!next || next->opcode != Opcode::kMessageIndex))
+    return "";
+  return begin + " says that its messages are indexed in " + std::to_string(index.message_index_length) +
+         " bytes after it, which is not where their indexes end";
+}
 
 std::string contradictionOf(const FileIndex& summary, const FileIndex& found, bool is_damaged) {
   if (!found.info.contradictions.empty()) return "its summary is not used, as its data contradict it or themselves";

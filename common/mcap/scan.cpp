@@ -46,6 +46,7 @@ class Scan {
       if (is_data_) {
         take(*place);
         is_data_ = !isDataEnd(*place);
+        data_end_ = place->end();
         index_.info.has_all_data = !is_data_;
         if (torn_into_) walk.moveTo(*std::exchange(torn_into_, std::nullopt));
       } else {
@@ -392,6 +393,11 @@ class Scan {
   void closeFile(const RecordPlace& footer) {
     FileInfo& info = index_.info;
     info.complete_bytes = footer.end();
+    const std::uint64_t between = footer.offset - std::min(data_end_, footer.offset);
+    if (!is_data_ && between > 0 && numberAt<std::uint64_t>(file_, footer.offset + kRecordHeadBytes) == 0) {
+      contradict("its footer at byte " + std::to_string(footer.offset) + " gives no summary, though " +
+                 std::to_string(between) + " bytes of one lie before it");
+    }
     is_closed_ = hasMagic(file_, footer.end()) && !beginsRecording(file_, footer.end());
     if (!is_closed_) {
       info.problem = "cut at byte " + std::to_string(footer.end()) + ": the closing magic does not follow the footer";
@@ -443,6 +449,7 @@ class Scan {
   Declarations declarations_;
   bool is_first_ = true;                    // no record of the recording has been read yet
   bool is_data_ = true;                     // and not the end of its data
+  std::uint64_t data_end_ = 0;              // where the last record of the data ends
   bool is_closed_ = false;                  // its footer and its magic have been read
   bool has_loose_ = false;                  // messages outside of chunks
   std::string cut_;                         // the first recording that has no end, and that another one follows

@@ -43,6 +43,9 @@ void printText(const Verification& found) {
   for (const auto* findings : {&found.damage, &found.cuts, &found.missing}) {
     for (const std::string& text : *findings) sayf("            {}\n", escaped(text));
   }
+  if (!found.damage.empty() || !found.cuts.empty()) {
+    sayf("            `bag recover` makes a recording of all that can be read, with an index that is right\n");
+  }
   for (const std::string& text : found.log_times.findings()) sayf("note        {}\n", text);
   sayf("messages    {} in {} streams\n", found.messages, found.ledger.streams().size());
   sayf("size        {:.2f} MB\n", static_cast<double>(found.bytes) * 1e-6);

@@ -139,6 +139,58 @@ TEST_F(ContradictionTest, AnIndexThatContradictsItsDataIsNotBelieved) {
   }
 }
 
+TEST_F(ContradictionTest, AnIndexThatPointsNowhereIsNamed) {
+  const auto nothing = [](IndexedFile&) {};
+  struct Case {
+    const char* words;
+    std::function<void(IndexedFile&)> summary;
+    std::function<void(SummaryOffset&, Footer&)> offsets = [](SummaryOffset&, Footer&) {};
+  };
+  const std::vector<Case> cases{
+      {"for the messages of channel 2", [](IndexedFile& f) { f.chunks[1].message_index_offsets[1].second += 9; }},
+      {"for the messages of channel 1", [](IndexedFile& f) { f.chunks[0].message_index_offsets[0].second = ~0ULL; }},
+      {"for the messages of channel 2",
+       [](IndexedFile& f) {
+         f.chunks[0].message_index_offsets[1].second = f.chunks[0].message_index_offsets[0].second;
+       }},
+      {"does not fit its data", [](IndexedFile& f) { f.chunks[1].message_index_length -= 1; }},
+      {"for the messages of channel 1", [](IndexedFile& f) { f.chunks[0].message_index_length = 0; }},
+      {"not where their indexes end",
+       [](IndexedFile& f) {
+         f.chunks[0].message_index_offsets.clear();
+         f.chunks[0].message_index_length = 0;
+       }},
+      {"says lz4", [](IndexedFile& f) { f.chunks[0].compression = "lz4"; }},
+      {"the chunk says not compressed", [](IndexedFile& f) { f.chunks[1].plain_size += 1; }},
+      {"the chunk says not compressed", [](IndexedFile& f) { f.chunks[1].packed_size += 1; }},
+      {"does not list every schema", [](IndexedFile& f) { f.statistics.schema_count = 9; }},
+      {"records Statistics, which are not those", nothing, [](SummaryOffset& one, Footer&) { one.group_length += 1; }},
+      {"records Statistics, which are not those", nothing, [](SummaryOffset& one, Footer&) { one.group_start = 0; }},
+      {"records Schema, which are not those", nothing,
+       [](SummaryOffset& one, Footer&) { one.group = Opcode::kSchema; }},
+      {"for the offsets in its summary", nothing, [](SummaryOffset&, Footer& one) { one.summary_offset_start += 1; }},
+      {"gives no summary, though", nothing, [](SummaryOffset&, Footer& one) { one = {}; }},
+  };
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.words);
+    IndexedFile file;
+    file.change_summary = one.summary;
+    file.change_offsets = one.offsets;
+    fill(file);
+    saveFile(path, file.finished());
+    const Reader reader(path);
+    EXPECT_FALSE(reader.info().has_summary);
+    EXPECT_TRUE(reader.info().is_complete);
+    EXPECT_TRUE(mentions(reader.info(), one.words)) << textOf(reader.info());
+    EXPECT_EQ(samplesOf(reader).size(), 10U);
+    const Recovery found = recovered();
+    EXPECT_TRUE(found.lost.empty());
+    EXPECT_FALSE(found.is_whole);
+    EXPECT_EQ(found.messages, 10U);
+    EXPECT_EQ(textOf(Reader(out).info()), "");
+  }
+}
+
 TEST_F(ContradictionTest, OfAnIdWithTwoMeaningsTheLaterCountsFromThereOn) {
   for (const bool is_cut : {false, true}) {
     IndexedFile file;

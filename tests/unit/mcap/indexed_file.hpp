@@ -107,12 +107,16 @@ class IndexedFile {
     const std::size_t summary_start = file.size();
     for (const Schema& one : schemas) put(file, appendSchema, one);
     for (const Channel& one : channels) put(file, appendChannel, one);
+    SummaryOffset offset{.group = Opcode::kStatistics, .group_start = file.size()};
     put(file, appendStatistics, statistics);
+    offset.group_length = file.size() - offset.group_start;
     for (const ChunkIndex& one : chunks) put(file, appendChunkIndex, one);
     for (const AttachmentIndex& one : attachments) put(file, appendAttachmentIndex, one);
     for (const MetadataIndex& one : metadata) put(file, appendMetadataIndex, one);
-    put(file, appendSummaryOffset, {Opcode::kStatistics, summary_start, 1});
-    appendFooter(file, {.summary_start = summary_start});
+    Footer footer{.summary_start = summary_start, .summary_offset_start = file.size()};
+    change_offsets(offset, footer);
+    put(file, appendSummaryOffset, offset);
+    appendFooter(file, footer);
     append(file, kMagic);
     return file;
   }
@@ -131,6 +135,7 @@ class IndexedFile {
   std::function<void(Chunk&)> change_head = [](Chunk&) {};
   std::function<bool(MessageIndex&)> change_message_index = [](MessageIndex&) { return true; };  // false: leave it out
   std::function<void(IndexedFile&)> change_summary = [](IndexedFile&) {};
+  std::function<void(SummaryOffset&, Footer&)> change_offsets = [](SummaryOffset&, Footer&) {};
 
  private:
   template <class Record>
