@@ -36,6 +36,17 @@ std::string metadataValue(const mcap::Source& reader, const std::string& record,
   return mcap::valueOf(metadataOf(reader, record), key);
 }
 
+unsigned firstPartKept(const mcap::Source& last_part) {
+  try {
+    const std::string text = attachmentText(last_part, "certificate.json").value_or("");
+    const nlohmann::json certificate = nlohmann::json::parse(text, nullptr, false);
+    const auto first = certificate.is_object() ? certificate.find("first_part") : certificate.end();
+    return first != certificate.end() && first->is_number_unsigned() ? first->get<unsigned>() : 0;
+  } catch (const mcap::FormatError&) {  // whoever reads what is certified says so
+    return 0;
+  }
+}
+
 bool hasTopic(const mcap::Source& reader, const std::string& topic) {
   const auto& counts = reader.statistics().channel_message_counts;
   return std::ranges::any_of(reader.channels(), [&](const auto& entry) {

@@ -17,6 +17,10 @@ namespace baton {
 /// A value of a metadata record; empty when there is no such record or key.
 [[nodiscard]] std::string metadataValue(const mcap::Source& reader, const std::string& record, const std::string& key);
 
+/// The index of the first part that a split recording still has, by the certificate in its last one: 0 unless parts
+/// were dropped for want of room, and where nothing that can be read says so.
+[[nodiscard]] unsigned firstPartKept(const mcap::Source& last_part);
+
 /// Whether a message of the topic is in the recording.
 [[nodiscard]] bool hasTopic(const mcap::Source& reader, const std::string& topic);
 

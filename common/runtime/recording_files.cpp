@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -12,6 +14,8 @@
 #include "base/error.hpp"
 #include "mcap/lookup.hpp"
 #include "mcap/readable_metadata.hpp"
+#include "runtime/recorded_extras.hpp"
+#include "runtime/recording_parts.hpp"
 #include "runtime/say.hpp"
 
 namespace baton {
@@ -25,6 +29,8 @@ struct Said {
   std::string profile;            // of the file's header
   std::string first;              // of a part: the name that the first part had
   std::optional<unsigned> index;  // of a part
+  std::string next{};             // of a part: the file in which it goes on; empty in the last
+  unsigned first_kept = 0;        // of the last part: the index of the first that was not dropped
   std::uint64_t begin_ns = 0;     // log times
   std::uint64_t end_ns = 0;
   bool has_messages = false;
@@ -51,7 +57,9 @@ Said askFile(const fs::path& path) {
       said.first = mcap::valueOf(one.values, "first");
       said.index = indexOf(one.values);
     }
+    if (one.name == "baton.part_end") said.next = mcap::valueOf(one.values, "next");
   }
+  if (said.index) said.first_kept = firstPartKept(reader);
   if (is_copy) said.index.reset();  // a piece of a part is none
   said.begin_ns = reader.statistics().start_time_ns;
   said.end_ns = reader.statistics().end_time_ns;
@@ -85,8 +93,14 @@ std::vector<fs::path> expandFolders(const std::vector<std::string>& given) {
   return paths;
 }
 
-/// Adds the parts that lie next to one, whatever they are called.
-void addSiblings(std::vector<Said>& files) {
+/// Whether it is a part of the recording that began in `first`, by its name.
+bool isCalledAsPart(const fs::path& file, const std::string& first) {
+  const fs::path recording = file.parent_path() / first;
+  return file == recording || std::ranges::count(furtherPartsOf(recording), file) > 0;
+}
+
+/// Adds the parts that lie next to one, whatever they are called. A file that cannot be read says nothing but its name.
+void addSiblings(std::vector<Said>& files, std::vector<std::string>& unreadable) {
   std::set<fs::path> known;
   for (const Said& one : files) known.insert(fs::absolute(one.path).lexically_normal());
   for (std::size_t i = 0, given = files.size(); i < given; ++i) {
@@ -98,17 +112,20 @@ void addSiblings(std::vector<Said>& files) {
         if (!other.index || other.runId() != files[i].runId() || other.first != files[i].first) continue;
         known.insert(fs::absolute(path).lexically_normal());
         files.push_back(std::move(other));
-      } catch (const Error&) {  // of something else, or damaged: then it is missed below
+      } catch (const Error& error) {
+        if (!isCalledAsPart(path, files[i].first)) continue;  // of something else
+        known.insert(fs::absolute(path).lexically_normal());
+        unreadable.push_back("a part cannot be read and is left out: " + std::string(error.what()));
       }
     }
   }
 }
 
-std::vector<Said> askFiles(const std::vector<fs::path>& paths, bool with_parts) {
+std::vector<Said> askFiles(const std::vector<fs::path>& paths, bool with_parts, std::vector<std::string>& unreadable) {
   std::vector<Said> files;
   files.reserve(paths.size());
   for (const fs::path& path : paths) files.push_back(askFile(path));
-  if (with_parts) addSiblings(files);
+  if (with_parts) addSiblings(files, unreadable);
   return files;
 }
 
@@ -165,15 +182,28 @@ void expectNothingTwice(const std::vector<Said>& files, bool are_parts) {
   }
 }
 
-std::vector<std::string> holesIn(const std::vector<Said>& parts) {
+/// "part 2 is missing", of those from the first to before the end.
+std::string missingText(unsigned first, unsigned end) {
+  return first + 1 == end ? fmt::format("part {} is missing", first)
+                          : fmt::format("parts {} to {} are missing", first, end - 1);
+}
+
+/// @param parts  in their order, at least one.
+std::vector<std::string> holesIn(const std::vector<Said>& parts, bool with_ends) {
   std::vector<std::string> holes;
+  const unsigned first = *parts.front().index, expected = parts.back().first_kept;
+  if (with_ends && first > expected) {
+    holes.push_back(fmt::format("{} before {}", missingText(expected, first), parts.front().path.string()));
+  }
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const unsigned after = *parts[i - 1].index, before = *parts[i].index;
-    if (before == after + 1) continue;
-    const std::string which = before == after + 2 ? fmt::format("part {} is", after + 1)
-                                                  : fmt::format("parts {} to {} are", after + 1, before - 1);
-    holes.push_back(
-        fmt::format("{} missing between {} and {}", which, parts[i - 1].path.string(), parts[i].path.string()));
+    if (before <= after + 1) continue;
+    holes.push_back(fmt::format("{} between {} and {}", missingText(after + 1, before), parts[i - 1].path.string(),
+                                parts[i].path.string()));
+  }
+  const Said& last = parts.back();
+  if (with_ends && !last.next.empty()) {
+    holes.push_back(fmt::format("{}, in which it goes on, is missing after {}", last.next, last.path.string()));
   }
   return holes;
 }
@@ -190,10 +220,11 @@ void addParts(CLI::App& command, bool& with_parts) {
                    "of a recording that was split also the other parts, which lie in the same folder");
 }
 
-std::vector<std::string> filesOf(const RecordingWish& wish) {
+std::vector<std::string> filesOf(const RecordingWish& wish, std::vector<std::string>* unreadable) {
   std::vector<fs::path> paths = expandFolders(wish.given);
   if (wish.with_parts) {
-    std::vector<Said> files = askFiles(paths, true);
+    std::vector<std::string> ignored;
+    std::vector<Said> files = askFiles(paths, true, unreadable == nullptr ? ignored : *unreadable);
     paths.clear();
     for (const Said& one : files) paths.push_back(one.path);
   }
@@ -202,8 +233,13 @@ std::vector<std::string> filesOf(const RecordingWish& wish) {
 
 FoundRecording findRecording(const RecordingWish& wish) {
   const std::vector<fs::path> paths = expandFolders(wish.given);
-  if (paths.size() == 1 && !wish.with_parts) return {mcap::FileList(paths), {}};
-  std::vector<Said> files = askFiles(paths, wish.with_parts);
+  std::error_code none;
+  const bool wants_all = wish.with_parts || std::ranges::any_of(wish.given, [&](const std::string& one) {
+                           return fs::is_directory(one, none);
+                         });
+  if (paths.size() == 1 && !wants_all) return {mcap::FileList(paths), {}};
+  FoundRecording found;
+  std::vector<Said> files = askFiles(paths, wish.with_parts, found.missing);
   expectOneRun(files);
   const bool are_parts = areParts(files);
   std::ranges::stable_sort(files, [&](const Said& a, const Said& b) {
@@ -213,7 +249,23 @@ FoundRecording findRecording(const RecordingWish& wish) {
   std::vector<fs::path> ordered;
   ordered.reserve(files.size());
   for (const Said& one : files) ordered.push_back(one.path);
-  return {mcap::FileList(std::move(ordered)), are_parts ? holesIn(files) : std::vector<std::string>{}};
+  found.files = mcap::FileList(std::move(ordered));
+  if (are_parts) std::ranges::move(holesIn(files, wants_all), std::back_inserter(found.missing));
+  return found;
+}
+
+std::vector<std::string> missingParts(const std::vector<std::string>& files) {
+  std::map<std::pair<std::string, std::string>, std::vector<Said>> recordings;
+  for (const std::string& file : files) {
+    Said said = askFile(file);
+    if (said.index) recordings[{said.runId(), said.first}].push_back(std::move(said));
+  }
+  std::vector<std::string> holes;
+  for (auto& [recording, parts] : recordings) {
+    std::ranges::sort(parts, {}, &Said::index);
+    std::ranges::move(holesIn(parts, true), std::back_inserter(holes));
+  }
+  return holes;
 }
 
 mcap::FileList findRecording(const RecordingWish& wish, ExitCode& exit_code) {

@@ -27,11 +27,19 @@ void addParts(CLI::App& command, bool& with_parts);
 
 struct FoundRecording {
   mcap::FileList files;
-  std::vector<std::string> missing;  // a sentence for each hole between the files: parts that are not among them
+  /// A sentence for each hole: parts that are not among the files, or cannot be read. Before the first and after the
+  /// last one where all were asked for, by --parts or a folder.
+  std::vector<std::string> missing;
 };
 
 /// The files alone, folders and other parts resolved, for whoever looks into them itself. Throws as below.
-[[nodiscard]] std::vector<std::string> filesOf(const RecordingWish& wish);
+/// @param unreadable  gets a sentence for each part that lies next to them and cannot be read.
+[[nodiscard]] std::vector<std::string> filesOf(const RecordingWish& wish,
+                                               std::vector<std::string>* unreadable = nullptr);
+
+/// What is missing of the split recordings, of any runs, of which the files are parts, in a sentence each. Throws what
+/// opening a recording throws.
+[[nodiscard]] std::vector<std::string> missingParts(const std::vector<std::string>& files);
 
 /// A single file is taken as it is, whatever it says. Throws UsageError when files are not of one recording (of several
 /// runs, recorded by others, one twice, two that have the same time of a run) or a folder has none, UnavailableError

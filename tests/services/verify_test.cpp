@@ -140,6 +140,14 @@ TEST_F(VerifyTest, APartThatIsMissingIsNamed) {
   }
 }
 
+TEST_F(VerifyTest, APartThatCannotBeOpenedIsDamage) {
+  const std::vector<std::string> files = write({.parts = 3});
+  const Verification found = verifyRecording({files[0], files[2]}, [](double) {}, {"run_0001.mcap cannot be read"});
+  EXPECT_EQ(found.verdict(), RecordingVerdict::kDamaged);
+  EXPECT_TRUE(mentions(found.damage, "run_0001.mcap")) << all(found);
+  EXPECT_TRUE(mentions(found.missing, "part 1 is not among")) << all(found);
+}
+
 TEST_F(VerifyTest, APartAloneSaysWhichOneItIsAndWhereTheOthersAre) {
   const std::vector<std::string> files = write({.parts = 4});
   const auto wordsOf = [](const std::string& file) {

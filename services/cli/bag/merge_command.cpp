@@ -11,6 +11,7 @@
 #include "bag/copy_target.hpp"
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "dds/hash.hpp"
 #include "mcap/repeated.hpp"
 #include "report/recording.hpp"
@@ -68,17 +69,20 @@ std::vector<Source> openSources(const std::vector<std::string>& files) {
   return sources;
 }
 
-/// Together they are one recording that was split, none of it missing: what its certificate says holds for them.
-bool isWhole(const std::vector<Source>& sources) {
-  const std::string run = metadataValue(*sources.front().reader, "baton.run", "run");
+/// Together they are one recording that was split: where none of it is missing, what its certificate says holds for
+/// them.
+bool areParts(const std::vector<Source>& sources) {
+  const auto identityOf = [](const Source& source) {
+    return std::pair(metadataValue(*source.reader, "baton.run", "run"),
+                     metadataValue(*source.reader, "baton.part", "first"));
+  };
   std::set<unsigned> indexes;
   for (const Source& source : sources) {
     const auto index = partIndex(*source.reader);
-    const bool is_sound = source.reader->info().is_complete && index && *index < sources.size();
-    if (!is_sound || metadataValue(*source.reader, "baton.run", "run") != run) return false;
+    if (!index || !source.reader->info().is_complete || identityOf(source) != identityOf(sources.front())) return false;
     indexes.insert(*index);
   }
-  return !run.empty() && indexes.size() == sources.size();
+  return !identityOf(sources.front()).first.empty() && indexes.size() == sources.size();
 }
 
 /// Names as they are, unless files have different things of one name: then each has its file's name in front. What is
@@ -123,8 +127,7 @@ void forEachExtra(const std::vector<Source>& sources, bool is_whole, mcap::Copie
   }
 }
 
-void copyExtras(const std::vector<Source>& sources, mcap::Copier& copy) {
-  const bool is_whole = isWhole(sources);
+void copyExtras(const std::vector<Source>& sources, bool is_whole, mcap::Copier& copy) {
   std::map<std::string, Names> names;  // by kind
   forEachExtra(sources, is_whole, nullptr,
                [&](const Source&, const std::string& kind, const auto& name, std::uint64_t hash, const auto&) {
@@ -170,17 +173,20 @@ void copyMessages(std::vector<Source>& sources, mcap::Copier& copy) {
 ExitCode merge(MergeRequest& request) {
   request.out.file = takeLast(request.given);
   const std::vector<std::string> files = filesOf({.given = request.given});
+  const std::vector<std::string> missing = missingParts(files);
+  for (const std::string& one : missing) say(stderr, "baton: warning: %s\n", one.c_str());
   std::vector<Source> sources = openSources(files);
   mcap::Copier copy(request.out.file, optionsFor(request.out, files));
-  copyExtras(sources, copy);
+  copyExtras(sources, missing.empty() && areParts(sources), copy);
   copyMessages(sources, copy);
   copy.finish();
   if (request.json) {
-    sayText(toText({{"out", request.out.file}, {"files", files}, {"messages", copy.messages()}}) + '\n');
+    sayText(toText({{"out", request.out.file}, {"files", files}, {"messages", copy.messages()}, {"missing", missing}}) +
+            '\n');
   } else {
     sayf("merged      {} files into {}: {} messages\n", sources.size(), request.out.file, copy.messages());
   }
-  return ExitCode::kOk;
+  return missing.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 }  // namespace
@@ -192,9 +198,10 @@ void addBagMerge(CLI::App& bag, ExitCode& exit_code) {
       "Each writer keeps a channel of its own; metadata and attachments of one name that differ get the name of their\n"
       "file in front. All parts of a recording that was split give the whole one, with its certificate; of anything\n"
       "else no certificate holds, and it is kept under the name original_...\n"
-      "Exit codes: 0 done; 1 OUT could not be written; 2 damaged or not a recording (`bag recover` makes a sound "
-      "one);\n"
-      "3 a file cannot be opened, or OUT is there already or cannot be made.");
+      "Exit codes: 0 done; 1 OUT could not be written, or it is there and parts of a split recording are missing in "
+      "it;\n"
+      "2 damaged or not a recording (`bag recover` makes a sound one); 3 a file cannot be opened, or OUT is there "
+      "already or cannot be made.");
   command->add_option("files", request->given, "recordings (MCAP) or folders of them, and then the recording to make")
       ->required();
   addOverwrite(*command, request->out);

@@ -6,7 +6,6 @@
 #include <future>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <utility>
@@ -57,14 +56,6 @@ void openPart(Part& part, const std::function<void(double)>& progress) {
   }
 }
 
-/// The index of the first part that there still is, by the certificate in the last one.
-unsigned firstPart(const Part& last) {
-  const auto text = attachmentText(*last.reader, "certificate.json");
-  const nlohmann::json certificate = nlohmann::json::parse(text.value_or(""), nullptr, false);
-  if (!certificate.is_object() || !certificate.contains("first_part")) return 0;
-  return certificate["first_part"].is_number_unsigned() ? certificate["first_part"].get<unsigned>() : 0;
-}
-
 /// A part alone proves nothing: which one it is, and what is before and behind it.
 std::string placeOf(const Part& part) {
   const auto said = [&](const char* key) { return metadataValue(*part.reader, "baton.part", key); };
@@ -89,7 +80,7 @@ std::vector<Part> openParts(const std::vector<std::string>& files, const std::fu
     if (parts.size() > 1 && (!part.index || part.run != parts[0].run || (i > 0 && part.index == parts[i - 1].index))) {
       throw UsageError("expected the parts of one recording, each once; " + part.file + " is none of them");
     }
-    const unsigned expected = i == 0 ? firstPart(parts.back()) : *parts[i - 1].index + 1;
+    const unsigned expected = i == 0 ? firstPartKept(*parts.back().reader) : *parts[i - 1].index + 1;
     if (part.index && *part.index != expected) {
       missing.push_back(fmt::format("part {} is not among the files", expected));
     }
@@ -249,8 +240,10 @@ RecordingVerdict Verification::verdict() const {
   return missing.empty() ? RecordingVerdict::kComplete : RecordingVerdict::kIncomplete;
 }
 
-Verification verifyRecording(const std::vector<std::string>& files, const std::function<void(double)>& progress) {
+Verification verifyRecording(const std::vector<std::string>& files, const std::function<void(double)>& progress,
+                             const std::vector<std::string>& unreadable) {
   Verification result;
+  result.damage = unreadable;
   const std::vector<Part> parts = openParts(files, progress, result.missing);
   const bool are_all = result.missing.empty();
   const auto certificate = attached(parts, "certificate.json");

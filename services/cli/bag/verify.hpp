@@ -33,9 +33,11 @@ struct Verification {
 /// are the parts of one recording. Memory is that of a chunk, and of an
 /// attachment at a time.
 /// @param progress  told which part of the work is done, from 0 to 1.
+/// @param unreadable  a sentence for each part that cannot be opened: damage.
 /// Throws UsageError when a file is not a recording, or the files are not parts of one, and UnavailableError when one
 /// cannot be opened.
 [[nodiscard]] Verification verifyRecording(const std::vector<std::string>& files,
-                                           const std::function<void(double)>& progress);
+                                           const std::function<void(double)>& progress,
+                                           const std::vector<std::string>& unreadable = {});
 
 }  // namespace baton

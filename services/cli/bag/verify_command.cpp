@@ -68,9 +68,12 @@ nlohmann::ordered_json toJson(const Verification& found) {
 
 ExitCode verify(const VerifyRequest& request) {
   ProgressLine line;
-  const Verification found = verifyRecording(filesOf(request.recording), [&line](double part) {
+  std::vector<std::string> unreadable;
+  const std::vector<std::string> files = filesOf(request.recording, &unreadable);
+  const auto progress = [&line](double part) {
     line.show(fmt::format("verifying {} {:3.0f} %", progressBar(part), 100.0 * part));
-  });
+  };
+  const Verification found = verifyRecording(files, progress, unreadable);
   line.clear();
   if (request.json) {
     sayText(toText(toJson(found)) + '\n');

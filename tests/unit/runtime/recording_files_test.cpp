@@ -32,6 +32,8 @@ class RecordingFiles : public testing::Test {
     std::string first{"run"};  // the name of the first part
     std::uint64_t begin_ns = 0;
     std::uint64_t end_ns = 0;
+    std::string next{};         // the part after it
+    std::string certificate{};  // JSON
     std::string profile{};
     bool is_cut_out = false;
   };
@@ -41,6 +43,10 @@ class RecordingFiles : public testing::Test {
     mcap::Writer writer(folder / name, options);
     if (!plan.run.empty()) writer.addMetadata("baton.run", {{"run", plan.run}, {"scenario", "s"}});
     if (!plan.part.empty()) writer.addMetadata("baton.part", {{"index", plan.part}, {"first", plan.first}});
+    if (!plan.next.empty()) writer.addMetadata("baton.part_end", {{"next", plan.next}});
+    if (!plan.certificate.empty()) {
+      writer.addAttachment("certificate.json", "application/json", 0, 0, mcap::asBytes(plan.certificate));
+    }
     if (plan.is_cut_out) writer.addMetadata("baton.cut", {{"file", "x"}});
     const mcap::ChannelId channel = writer.addChannel("t", "cdr", mcap::kNoSchema);
     for (const std::uint64_t time : {plan.begin_ns, plan.end_ns}) writer.write(channel, 1, time, time, {});
@@ -114,6 +120,49 @@ TEST_F(RecordingFiles, AMissingPartIsNamedAndMakesTheExitCode) {
   exit_code = ExitCode::kOk;
   (void)findRecording({.given = {given[0]}}, exit_code);
   EXPECT_EQ(exit_code, ExitCode::kOk) << "a part alone is read as ever";
+}
+
+TEST_F(RecordingFiles, AMissingFirstOrLastPartIsNamedWhereAllAreWanted) {
+  const auto writeOf = [&](unsigned index, const std::string& next, const std::string& certificate) {
+    return write("p" + std::to_string(index) + ".mcap", {.run = "r",
+                                                         .part = std::to_string(index),
+                                                         .begin_ns = index * 10 + 1,
+                                                         .end_ns = index * 10 + 9,
+                                                         .next = next,
+                                                         .certificate = certificate});
+  };
+  const std::string one = writeOf(1, "run_0002.mcap", ""), two = writeOf(2, "run_0003.mcap", "");
+  const Texts expected{"part 0 is missing before " + one,
+                       "run_0003.mcap, in which it goes on, is missing after " + two};
+  EXPECT_EQ(findRecording({.given = {one}, .with_parts = true}).missing, expected);
+  EXPECT_EQ(missingParts({two, one}), expected);
+  EXPECT_EQ(findRecording({.given = {folder.string()}}).missing.size(), 2U);
+  EXPECT_TRUE(findRecording({.given = {one, two}}).missing.empty()) << "that is what was asked for";
+  ExitCode exit_code = ExitCode::kOk;
+  (void)findRecording({.given = {one}, .with_parts = true}, exit_code);
+  EXPECT_EQ(exit_code, ExitCode::kFailed);
+  const std::string three = writeOf(3, "", R"({"first_part": 1})");
+  EXPECT_EQ(findRecording({.given = {one}, .with_parts = true}).missing, Texts{}) << "part 0 was dropped";
+  EXPECT_EQ(missingParts({one, two, three}), Texts{});
+}
+
+TEST_F(RecordingFiles, APartThatCannotBeReadIsNamed) {
+  const std::string first = writePart("run.mcap", 0), last = writePart("run_0002.mcap", 2);
+  std::ofstream(folder / "run_0001.mcap") << std::string(100, '\0');
+  std::ofstream(folder / "notes_0001.mcap") << "of something else";
+  write("named.mcap", {.run = "r", .part = "5", .first = "run.mcap", .begin_ns = 1, .end_ns = 9});
+  std::string text;
+  for (const std::string& one :
+       findRecording({.given = {(folder / "named.mcap").string()}, .with_parts = true}).missing) {
+    text += one + "\n";
+  }
+  EXPECT_NE(text.find("a part cannot be read and is left out: " + (folder / "run_0001.mcap").string()),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("notes_0001"), std::string::npos) << text;
+  Texts unreadable;
+  (void)filesOf({.given = {(folder / "named.mcap").string()}, .with_parts = true}, &unreadable);
+  EXPECT_EQ(unreadable.size(), 1U);
 }
 
 TEST_F(RecordingFiles, FilesOfSeveralRunsAreRefusedWithWhatDiffers) {
