@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "mcap/lookup.hpp"
+#include "mcap/readable_metadata.hpp"
 #include "mcap/reader.hpp"
 #include "runtime/paths.hpp"
 
@@ -17,8 +18,8 @@ namespace {
 /// Why a file is not taken for a part of an earlier recording of that name; empty when it says itself that it is one.
 std::string whyNoPart(const fs::path& file, const fs::path& recording) {
   try {
-    const mcap::Reader reader(file, {.trusts_summary = true});
-    const bool is_part = std::ranges::any_of(reader.metadata(), [&](const mcap::Metadata& one) {
+    const mcap::Reader reader(file, {.trusts_summary = true, .on_damage = [](const mcap::Damage&) {}});
+    const bool is_part = std::ranges::any_of(mcap::readableMetadata(reader), [&](const mcap::Metadata& one) {
       return one.name == "baton.part" && mcap::valueOf(one.values, "first") == recording.filename().string();
     });
     return is_part ? "" : "is none";

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <string>
 
 #include "mcap/reader.hpp"
 #include "mcap/writer.hpp"
@@ -52,6 +55,35 @@ TEST(RecordingParts, AreKnownWithoutReadingThem) {
   (void)claimRecording("--out", (fs::path(pattern) / "run.mcap").string(), true, true);
   mcap::setOpeningSink({});
   EXPECT_EQ(seen, std::vector<std::uint64_t>{size}) << "it was opened, and no chunk of it was read";
+  EXPECT_FALSE(fs::exists(part));
+  fs::remove_all(pattern);
+}
+
+TEST(RecordingParts, AreKnownThoughTheyAreDamaged) {
+  std::string pattern = (fs::temp_directory_path() / "baton-parts-XXXXXX").string();
+  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+  const fs::path part = fs::path(pattern) / "run_0001.mcap";
+  {
+    mcap::Writer writer(part);
+    writer.addMetadata("baton.part", {{"first", "run.mcap"}, {"index", "1"}});
+    const mcap::ChannelId channel = writer.addChannel("t", "cdr", mcap::kNoSchema);
+    for (int i = 0; i < 2; ++i) {
+      writer.write(channel, 0, 0, 0, mcap::asBytes("data"));
+      writer.addMetadata("between", {});  // ends the chunk
+    }
+    writer.close();
+  }
+  std::string bytes;
+  {
+    std::ifstream in(part, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  bytes.resize(bytes.size() - 40);  // no index
+  const std::size_t between = bytes.find("between");
+  ASSERT_NE(between, std::string::npos);
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(between), 30, '\0');
+  std::ofstream(part, std::ios::binary) << bytes;
+  (void)claimRecording("--out", (fs::path(pattern) / "run.mcap").string(), true, true);
   EXPECT_FALSE(fs::exists(part));
   fs::remove_all(pattern);
 }
