@@ -16,6 +16,8 @@
 namespace baton {
 namespace {
 
+constexpr const char* kWhatToChoose = "choose a part of that (`baton bag info` lists the topics)";
+
 constexpr std::uint64_t kLast = std::numeric_limits<std::uint64_t>::max();
 
 /// Events and statuses of Baton say which step was open when they were made; they belong to none.
@@ -27,8 +29,10 @@ bool mayCarryStep(const std::string& topic) {
 template <class T>
 void expectOrder(const std::optional<T>& from, const std::optional<T>& to, const char* suffix, const char* what) {
   if (!from || !to || *to >= *from) return;
-  throw UsageError(fmt::format("--to{}: expected {} that is not before --from{}, found {} after {}", suffix, what,
-                               suffix, *to, *from));
+  throw UsageError(
+      fmt::format("--to{0}: expected {1} that is not before --from{0} {2}, found {3}; exchange the two, or "
+                  "leave one of them out",
+                  suffix, what, *from, *to));
 }
 
 /// Seconds as they are typed, to the nanosecond; the latest there is, for what is beyond it.
@@ -82,6 +86,11 @@ void expectOneRange(const RangeWish& wish) {
   expectOrder(wish.from_sim_s, wish.to_sim_s, "-sim", "a time");
 }
 
+UsageError nothingChosen(const mcap::Source& reader, const std::string& file) {
+  return UsageError(fmt::format("expected messages in these topics and times, found none: {} has {} in {:.6f} s; {}",
+                                file, reader.statistics().message_count, mcap::durationOf(reader), kWhatToChoose));
+}
+
 RecordingRange::RecordingRange(const RangeWish& wish, const mcap::Source& reader, const std::string& file)
     : reader_(reader) {
   expectOneRange(wish);
@@ -95,8 +104,9 @@ RecordingRange::RecordingRange(const RangeWish& wish, const mcap::Source& reader
   if (wish.from_s) start_ns_ = mcap::logTimeAt(reader, *wish.from_s);
   if (wish.to_s) end_ns_ = mcap::logTimeAt(reader, *wish.to_s);
   if (start_ns_ > reader.statistics().end_time_ns) {
-    throw UsageError(fmt::format("--from: expected a time in {}, which ends {:.6f} s after its first message, found {}",
-                                 file, mcap::durationOf(reader), *wish.from_s));
+    throw UsageError(
+        fmt::format("--from: expected a time in {}, which ends {:.6f} s after its first message, found {}; {}", file,
+                    mcap::durationOf(reader), *wish.from_s, kWhatToChoose));
   }
 }
 
@@ -117,11 +127,12 @@ RecordingRange::Steps RecordingRange::stepsAt(const RangeWish& wish, std::uint64
                     file, dds::topics::kPlantState.name));
   }
   if (wanted.isEmpty()) {
-    throw UsageError(fmt::format(
-        "--from-sim, --to-sim: expected times with a step in {}, which{} goes from {:.9g} to "
-        "{:.9g} s of simulated time, found {:.9g} to {}",
-        file, passText(begin_ns), static_cast<double>(times.first) * 1e-9, static_cast<double>(times.last) * 1e-9,
-        wish.from_sim_s.value_or(0.0), wish.to_sim_s ? fmt::format("{:.9g}", *wish.to_sim_s) : "its end"));
+    throw UsageError(
+        fmt::format("--from-sim, --to-sim: expected times with a step in {}, which{} goes from {:.9g} to "
+                    "{:.9g} s of simulated time, found {:.9g} to {}; {}",
+                    file, passText(begin_ns), static_cast<double>(times.first) * 1e-9,
+                    static_cast<double>(times.last) * 1e-9, wish.from_sim_s.value_or(0.0),
+                    wish.to_sim_s ? fmt::format("{:.9g}", *wish.to_sim_s) : "its end", kWhatToChoose));
   }
   return {wanted.first, wanted.last};
 }
@@ -149,9 +160,9 @@ void RecordingRange::findTimes(std::uint64_t begin_ns, const std::string& file) 
   }
   if (times.isEmpty()) {
     throw UsageError(
-        fmt::format("--from-step, --to-step: expected steps that {} has, which{} are {} to {}, found {} to {}", file,
-                    passText(begin_ns), steps.first, steps.last, steps_->from,
-                    steps_->to == kLast ? "its end" : std::to_string(steps_->to)));
+        fmt::format("--from-step, --to-step: expected steps that {} has, which{} are {} to {}, found {} to {}; {}",
+                    file, passText(begin_ns), steps.first, steps.last, steps_->from,
+                    steps_->to == kLast ? "its end" : std::to_string(steps_->to), kWhatToChoose));
   }
   start_ns_ = times.first;
   end_ns_ = times.last;

@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 
+#include "base/error.hpp"
 #include "mcap/source.hpp"
 #include "runtime/recorded_types.hpp"
 
@@ -40,6 +41,9 @@ extern const char* const kRangeHelp;
 
 /// Throws UsageError for a begin after the end, and for ways that are mixed.
 void expectOneRange(const RangeWish& wish);
+
+/// For topics and times in which a recording has no message; says what it has.
+[[nodiscard]] UsageError nothingChosen(const mcap::Source& reader, const std::string& file);
 
 /// The same, of a certain recording.
 class RecordingRange {

@@ -37,7 +37,9 @@ Playlist::Playlist(const ReplayOptions& options)
   chooseChannels(options);
   if (!options.without_latched) latched_ = latchedBefore(reader_, filter_);
   for (LatchedMessage& one : latched_) one.view.log_time_ns = filter_.start_time_ns;  // due at once
-  total_ = countMessages() + latched_.size();
+  const std::uint64_t chosen = countMessages();
+  if (chosen == 0 && has_range_) throw nothingChosen(reader_, found_.files.string());
+  total_ = chosen + latched_.size();
   rewind();
 }
 

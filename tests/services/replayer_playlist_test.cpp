@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "base/error.hpp"
 #include "mcap/writer.hpp"
 #include "support/processes.hpp"
 
@@ -64,6 +65,12 @@ TEST_F(PlaylistTest, WithoutItWhenToldAndAtTheBeginningThereIsNothingBefore) {
   options.topics = {"rate"};
   Playlist other(options);
   EXPECT_EQ(rest(other), (Due{{6, 25}, {8, 35}})) << "of the chosen topics";
+}
+
+TEST_F(PlaylistTest, ARangeWithNothingInItIsRefused) {
+  options.range.from_s = 26e-9;
+  options.range.to_s = 28e-9;
+  EXPECT_THROW(Playlist{options}, UsageError) << "though there is something from before";
 }
 
 }  // namespace

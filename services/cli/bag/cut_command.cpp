@@ -13,7 +13,6 @@
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
 #include "dds/hash.hpp"
-#include "mcap/lookup.hpp"
 #include "mcap/repeated.hpp"
 #include "runtime/json.hpp"
 #include "runtime/latched.hpp"
@@ -124,10 +123,7 @@ ExitCode cut(CutRequest& request) {
   mcap::Copier copy(request.out.file, options);
   copyExtras(reader, copy);
   const Copied copied = copyMessages(request, reader, in, copy);
-  if (copied.kept == 0) {
-    throw UsageError(fmt::format("expected messages in these topics and times, found none: {} has {} in {:.6f} s", in,
-                                 copied.of, mcap::durationOf(reader)));
-  }
+  if (copied.kept == 0) throw nothingChosen(reader, in);
   copy.metadata("baton.cut", cutMetadata(request.what, in, copied.kept, copied.of));
   if (copied.repeated > 0) copy.metadata(mcap::kRepeatedRecord, mcap::repeatedRecord(copied.repeated));
   copy.finish();

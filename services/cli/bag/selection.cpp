@@ -35,7 +35,8 @@ SelectedMessages::SelectedMessages(const Selection& selection)
                 complain(file.string(), mcap::describe(damage) + "; left out");
               }),
       range_(selection.range, reader_, found_.files.string()),
-      filter_(filterOf(selection, range_, reader_)) {
+      filter_(filterOf(selection, range_, reader_)),
+      has_range_(!selection.range.isAll()) {
   for (const std::string& hole : found_.missing) complain(hole);
   const mcap::FileInfo& info = reader_.info();
   if (!info.is_complete) {
@@ -73,14 +74,17 @@ void SelectedMessages::forEach(const std::string& doing, const std::function<boo
   const auto expected = static_cast<double>(std::max<std::uint64_t>(1, expectedMessages()));
   mcap::JoinedCursor messages = reader_.messages(filter_);
   std::uint64_t done = 0;
+  bool has_any = false;
   for (mcap::MessageView message; messages.next(message);) {
     if (!range_.takes(message)) continue;
+    has_any = true;
     if (!use(message)) break;
     if (++done % kShowSelectionEvery != 0 || doing.empty()) continue;
     const double part = std::min(1.0, static_cast<double>(done) / expected);
     progress_.show(doing + " " + progressBar(part) + " " + std::to_string(done) + " messages");
   }
   progress_.show("");
+  if (!has_any && has_range_) throw nothingChosen(reader_, found_.files.string());
 }
 
 }  // namespace baton

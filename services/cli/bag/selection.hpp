@@ -34,7 +34,7 @@ class SelectedMessages {
   explicit SelectedMessages(const Selection& selection);
 
   /// In order of log time. `use` returns false to end it early. Shows on the terminal how far it is, after `doing`,
-  /// which is empty to show nothing.
+  /// which is empty to show nothing. Throws UsageError when a range was asked for and there is nothing in it.
   void forEach(const std::string& doing, const std::function<bool(const mcap::MessageView&)>& use);
 
   /// Says something on standard error that makes the exit code kFailed.
@@ -55,6 +55,7 @@ class SelectedMessages {
   mcap::JoinedReader reader_;  // finds damage while it is made, and tells of it
   RecordingRange range_;
   mcap::MessageFilter filter_;
+  bool has_range_;
 };
 
 }  // namespace baton

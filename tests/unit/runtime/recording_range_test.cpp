@@ -206,6 +206,10 @@ TEST_F(RecordingRangeTest, RefusesContradictions) {
   EXPECT_NE(refusal({.to_step = 3, .from_sim_s = 0.0}).find("a range of one kind"), std::string::npos);
   EXPECT_NE(refusal({.from_s = 0.0, .to_sim_s = 1.0}).find("a range of one kind"), std::string::npos);
   EXPECT_NE(refusal({.from_step = 3, .to_step = 2}).find("--to-step: expected a step"), std::string::npos);
+  EXPECT_NE(refusal({.from_step = 5, .to_step = 3}).find("--from-step 5, found 3; exchange the two"),
+            std::string::npos);
+  EXPECT_NE(refusal({.from_step = 9}).find("found 9 to its end; choose"), std::string::npos);
+  EXPECT_NE(refusal({.from_sim_s = 1.0}).find("found 1 to its end; choose"), std::string::npos);
   EXPECT_NE(refusal({.from_sim_s = 3, .to_sim_s = 2}).find("--to-sim: expected a time"), std::string::npos);
   EXPECT_NE(refusal({.from_s = 3, .to_s = 2}).find("--to: expected a time"), std::string::npos);
 }
