@@ -144,7 +144,7 @@ InputFile::InputFile(std::filesystem::path path) : path_(std::move(path)), fd_(o
   if (S_ISDIR(status.st_mode)) {
     throw UsageError(path_.string() +
                      " is a folder, as rosbag2 makes for a recording: give the .mcap file in it; of a " +
-                     ".db3 file `ros2 bag convert` makes one");
+                     ".db3 file `ros2 bag convert` makes one, `mcap convert` also of a .bag file");
   }
   if (!S_ISREG(status.st_mode)) throw UsageError(path_.string() + " is not a regular file");
   size_ = static_cast<std::uint64_t>(status.st_size);

@@ -1,10 +1,13 @@
 #include "mcap/index.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <functional>
 #include <map>
+#include <string_view>
 #include <utility>
 
+#include "base/text.hpp"
 #include "mcap/crc.hpp"
 #include "mcap/shape.hpp"
 
@@ -22,20 +25,39 @@ std::string beginOf(const InputFile& file) {
 
 /// Files that are given in the place of a recording: what they are, and what to do.
 std::string whatBeginsWith(const std::string& begin) {
-  if (begin.empty()) return "it is empty";
-  if (begin.starts_with("SQLite format 3")) {
-    return "it is an SQLite database, as rosbag2 records in (.db3): `ros2 bag convert` or `mcap convert` makes an MCAP "
-           "file of it";
+  struct Kind {
+    std::string_view magic;
+    const char* text;
+  };
+  using namespace std::string_view_literals;
+  static constexpr std::array kKinds{
+      Kind{"SQLite format 3",
+           "it is an SQLite database, as rosbag2 records in (.db3): `ros2 bag convert` or `mcap convert` makes an MCAP "
+           "file of it"},
+      Kind{"#ROSBAG V", "it is a ROS 1 bag: `mcap convert` makes an MCAP file of it"},
+      Kind{"\x28\xb5\x2f\xfd"sv, "it is compressed with zstd: decompress it with `zstd -d` first"},
+      Kind{"\x1f\x8b"sv, "it is compressed with gzip: decompress it with `gunzip` first"},
+      Kind{"BZh", "it is compressed with bzip2: decompress it with `bunzip2` first"},
+      Kind{"\xfd\x37zXZ"sv, "it is compressed with xz: decompress it with `unxz` first"},
+      Kind{"\x04\x22\x4d\x18"sv, "it is compressed with LZ4: decompress it with `lz4 -d` first"},
+      Kind{"PK\x03\x04"sv, "it is a zip archive: take the .mcap file out of it with `unzip` first"},
+      Kind{"\x89HDF"sv, "it is an HDF5 file; give a recording, whose name ends in .mcap"},
+  };
+  if (begin.empty()) return "it is empty, nothing was written into it; give another file";
+  for (const Kind& kind : kKinds) {
+    if (begin.starts_with(kind.magic)) return kind.text;
   }
-  if (begin.starts_with("#ROSBAG V")) return "it is a ROS 1 bag: `mcap convert` makes an MCAP file of it";
+  if (begin.find_first_not_of('\0') == std::string::npos) {
+    return "it begins with " + zerosText(begin.size()) + "; what it was cannot be told, use a copy of it";
+  }
   const std::size_t text = std::min(begin.find_first_not_of(" \t\r\n\xef\xbb\xbf"), begin.size());
   if (begin[std::min(text, begin.size() - 1)] == '<') {
     return "it is XML, as a robot description (URDF) is; a recording ends in .mcap";
   }
-  if (begin.starts_with("\x28\xb5\x2f\xfd") || begin.starts_with("\x1f\x8b")) {
-    return "it is a compressed file: decompress it with zstd or gzip first";
-  }
-  return "it does not begin with the MCAP magic";
+  const bool is_text =
+      std::ranges::none_of(begin, [](unsigned char c) { return std::iscntrl(c) != 0 && std::isspace(c) == 0; });
+  if (is_text) return "it is text and does not begin with the MCAP magic; give a recording, whose name ends in .mcap";
+  return "it does not begin with the MCAP magic; give a recording, whose name ends in .mcap";
 }
 
 /// What a summary lists of the data section.

@@ -86,8 +86,14 @@ std::vector<fs::path> expandFolders(const std::vector<std::string>& given) {
       continue;
     }
     std::vector<fs::path> inside = recordingsIn(one);
-    if (inside.empty()) inside = recordingsIn(one, ".db3");  // of rosbag2: it is refused with what to do about it
-    if (inside.empty()) throw UsageError(one + ": expected a folder with recordings (*.mcap), found none in it");
+    for (const char* foreign : {".db3", ".bag", ".zstd", ".zst", ".gz"}) {  // refused with what to do about it
+      if (inside.empty()) inside = recordingsIn(one, foreign);
+    }
+    if (inside.empty()) {
+      throw UsageError(one +
+                       ": expected a folder with recordings (*.mcap), found none in it; those in folders in it are "
+                       "not looked for: give their folder, or a file");
+    }
     paths.insert(paths.end(), inside.begin(), inside.end());
   }
   return paths;

@@ -268,6 +268,14 @@ TEST_F(ReaderTest, RefusesWhatIsNotARecording) {
                                    {"<?xml version=\"1.0\"?><robot/>", "a robot description (URDF)"},
                                    {"\n <robot name=\"a\"/>", "a robot description (URDF)"},
                                    {"   ", "the MCAP magic"},
+                                   {"name: mine\nrobot: \xc3\xa9\n", "it is text"},
+                                   {"\x01\x02 binary", "it does not begin with the MCAP magic; give"},
+                                   {"\x28\xb5\x2f\xfd and so on", "`zstd -d`"},
+                                   {"\x1f\x8b\x08", "`gunzip`"},
+                                   {"BZh91AY", "`bunzip2`"},
+                                   {"\xfd\x37zXZ", "`unxz`"},
+                                   {"\x04\x22\x4d\x18", "`lz4 -d`"},
+                                   {"PK\x03\x04", "`unzip`"},
                                    {"\x1f\x8b\x08", "decompress it"}}) {
     saveFile(path, asBytes(text));
     try {
@@ -277,6 +285,13 @@ TEST_F(ReaderTest, RefusesWhatIsNotARecording) {
       EXPECT_NE(std::string(error.what()).find("is not an MCAP recording: "), std::string::npos) << error.what();
       EXPECT_NE(std::string(error.what()).find(hint), std::string::npos) << error.what();
     }
+  }
+  saveFile(path, Bytes(5000));
+  try {
+    const Reader reader(path);
+    ADD_FAILURE() << "took zeros for a recording";
+  } catch (const FormatError& error) {
+    EXPECT_NE(std::string(error.what()).find("it begins with 64 zero bytes"), std::string::npos) << error.what();
   }
   try {
     const Reader reader(path.parent_path());

@@ -95,6 +95,15 @@ TEST_F(RecordingFiles, AFolderStandsForTheRecordingsInIt) {
             std::string::npos);
 }
 
+TEST_F(RecordingFiles, AFolderOfSomethingElseIsNamedForWhatItIs) {
+  fs::create_directory(folder / "ros1");
+  std::ofstream(folder / "ros1/a.bag") << "#ROSBAG V2.0\n" << std::string(100, 'x');
+  EXPECT_NE(refusal({.given = {(folder / "ros1").string()}, .with_parts = true}).find("it is a ROS 1 bag"),
+            std::string::npos);
+  fs::create_directory(folder / "none");
+  EXPECT_NE(refusal({.given = {(folder / "none").string()}}).find("give their folder, or a file"), std::string::npos);
+}
+
 TEST_F(RecordingFiles, OtherPartsAreFoundWhenAskedForByWhatTheySay) {
   const std::string middle = writePart("middle.mcap", 1);
   writePart("renamed.mcap", 0);
