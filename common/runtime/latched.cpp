@@ -70,6 +70,9 @@ std::size_t latchedDepth(const std::string& topic, const mcap::StringMap& metada
     if (mcap::valueOf(qos, "history") == "keep_all") return kKeepAll;
     return std::max<std::size_t>(1, recordedNumber<std::uint32_t>(qos, "depth"));
   }
+  // A latching publisher of ROS 1 keeps its last message; converted bags have a channel for each publisher.
+  const std::string latching = mcap::valueOf(metadata, "latching");
+  if (latching == "1" || latching == "true") return 1;
   return depthOfOffers(mcap::valueOf(metadata, "offered_qos_profiles"));
 }
 

@@ -52,6 +52,13 @@ TEST(LatchedDepth, OfARosBagIsThatOfAllItsPublishers) {
   EXPECT_EQ(depthOf(""), 0U);
 }
 
+TEST(LatchedDepth, OfALatchingPublisherOfRos1IsOne) {
+  EXPECT_EQ(latchedDepth("/tf_static", {{"latching", "1"}, {"callerid", "/map"}, {"type", "tf2_msgs/TFMessage"}}), 1U);
+  EXPECT_EQ(latchedDepth("/map", {{"latching", "true"}}), 1U);
+  EXPECT_EQ(latchedDepth("/map", {{"latching", "0"}}), 0U);
+  EXPECT_EQ(latchedDepth("/map", {{"latching", ""}}), 0U);
+}
+
 struct Kept {
   explicit Kept(std::size_t max_bytes = 1000) : samples(max_bytes) {}
   void keep(std::size_t stream, const std::string& instance, std::size_t depth) {
