@@ -7,6 +7,8 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <span>
 #include <sstream>
 #include <tuple>
@@ -35,7 +37,7 @@ constexpr int kSocketBuffer = 4 << 20;     // loopback UDP loses datagrams when 
 // Discovery data of a Baton process: one field a line, then the proof of them.
 std::string fieldsOf(const Peer& peer) {
   return "baton\n" + peer.cell + "\n" + peer.run + "\n" + peer.service + "\n" + std::to_string(peer.started_ns) + "\n" +
-         std::to_string(peer.pid) + "\n";
+         std::to_string(peer.pid) + "\n" + std::to_string(peer.process_began) + "\n";
 }
 
 std::string encodePeer(const Peer& peer) { return fieldsOf(peer) + peer.proof; }
@@ -49,7 +51,7 @@ std::optional<Peer> decodePeer(const std::string& text, const GuidPrefix& prefix
   std::getline(lines, peer.cell);
   std::getline(lines, peer.run);
   std::getline(lines, peer.service);
-  lines >> peer.started_ns >> peer.pid;
+  lines >> peer.started_ns >> peer.pid >> peer.process_began;
   // They are shown in logs and on terminals. Ours have no such characters.
   const std::string names = peer.cell + peer.run + peer.service;
   if (lines.fail() || !isPlain(names)) return std::nullopt;
@@ -214,8 +216,12 @@ Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_
   }
   expectUp(options.addresses, interfaces());
   [[maybe_unused]] static const bool is_first = (ignoreForeignSettings(), true);
-  self = {
-      .cell = options.cell, .run = options.run, .service = options.service, .started_ns = clock.now(), .pid = getpid()};
+  self = {.cell = options.cell,
+          .run = options.run,
+          .service = options.service,
+          .started_ns = clock.now(),
+          .pid = getpid(),
+          .process_began = processBegan(getpid())};
   const auto introduce = [&](rtps::GuidPrefix_t& prefix, DomainParticipantQos& qos) {
     std::copy_n(prefix.value, self.prefix.size(), self.prefix.begin());
     if (key) {
@@ -247,8 +253,10 @@ Participant::Impl::~Impl() {
 
 void Participant::Impl::forget(const GuidPrefix& prefix) {
   strangers.erase(prefix);
-  peers.erase(prefix);
-  if (key && key->roleOf(prefix) && departed.insert(prefix).second) ++departures;
+  const auto known = peers.extract(prefix);
+  const auto role = key ? key->roleOf(prefix) : std::nullopt;
+  if (!role || !departed.try_emplace(prefix, known.empty() ? Peer{} : known.mapped()).second) return;
+  if (role != Role::kOperator) ++departures;
 }
 
 void Participant::Impl::onParticipantGone(const rtps::GUID_t& guid) {
@@ -267,11 +275,11 @@ void Participant::Impl::onParticipant(const fastdds::ParticipantData& data) {
   peer->is_stranger = key && (is_ours || is_marked) && !is_proven;
   {
     const std::lock_guard lock(mutex);
-    if (departed.contains(prefix)) peer->is_stranger = true;
+    if (departed.contains(prefix)) return;  // an announcement that comes late, or an heir's: nobody hears it
     auto& known = peer->is_stranger ? strangers : peers;
     if (const auto found = known.find(prefix); found != known.end() && found->second == *peer) return;  // said again
-    if (is_marked && peers.contains(prefix)) return;  // a member is who it was when it came
-    if (is_proven || known.size() < kMaxKnown) known[prefix] = *peer;
+    if (is_marked && peers.contains(prefix)) return;                   // a member is who it was when it came
+    if (is_marked || known.size() < kMaxKnown) known[prefix] = *peer;  // marks cannot be made in number
     if (!peer->is_stranger) strangers.erase(prefix);
   }
   if (on_peer) on_peer(*peer);
@@ -361,6 +369,12 @@ void Participant::bury(const GuidPrefix& prefix) {
   impl_->forget(prefix);
 }
 
+std::optional<Peer> Participant::departed(const GuidPrefix& prefix) const {
+  const std::lock_guard lock(impl_->mutex);
+  const auto found = impl_->departed.find(prefix);
+  return found == impl_->departed.end() ? std::nullopt : std::optional(found->second);
+}
+
 std::uint64_t Participant::departures() const { return impl_->departures; }
 
 std::vector<Peer> Participant::peers() const {
@@ -416,6 +430,18 @@ std::vector<DiscoveredWriter> Participant::writers() const {
   std::vector<DiscoveredWriter> result;
   for (const auto& [guid, writer] : impl_->writers) result.push_back(writer);
   return result;
+}
+
+std::uint64_t processBegan(int pid) {
+  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
+  const std::string text((std::istreambuf_iterator<char>(stat)), {});
+  if (text.empty()) return 0;
+  // "pid (name) state ...": the name may have blanks and brackets. The time is the twentieth word after it.
+  std::istringstream words(text.substr(std::min(text.rfind(')'), text.size() - 1) + 1));
+  std::string skipped;
+  for (int i = 0; i < 19; ++i) words >> skipped;
+  std::uint64_t ticks = 0;
+  return words >> ticks ? ticks : 0;
 }
 
 std::string productName() { return std::string("Fast DDS ") + fastdds::kVersion; }

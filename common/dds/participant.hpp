@@ -39,7 +39,8 @@ struct Peer {
   std::string service;
   std::int64_t started_ns = 0;  // since the epoch, by the clock of its run
   int pid = 0;
-  std::string proof{};  // that all this was said by who has the key of that run; empty where it has none
+  std::uint64_t process_began = 0;  // in the kernel's ticks since it booted; 0: not known. A process id comes again
+  std::string proof{};              // that all this was said by who has the key of that run; empty where it has none
   GuidPrefix prefix{};
   bool is_stranger = false;  // says that it is of our run, or bears its mark, and cannot prove it
   bool operator==(const Peer&) const = default;
@@ -96,10 +97,13 @@ class Participant {
   [[nodiscard]] bool isMember(const GuidPrefix& prefix) const;
   /// Its process has ended without a farewell.
   void bury(const GuidPrefix& prefix);
-  /// How many members have left or were buried: while this is the same, so is what roleOf() says of members.
+  /// A member that has left or was buried, as it was.
+  [[nodiscard]] std::optional<Peer> departed(const GuidPrefix& prefix) const;
+  /// How many members have left or were buried, but for operators: while this is the same, so is what roleOf() says of
+  /// the others.
   [[nodiscard]] std::uint64_t departures() const;
   /// Whether a sample comes from a second copy of a service that has not given way yet. Not for services that may be
-  /// started again: a process that was killed is remembered for the length of its lease.
+  /// started again, in a run without a key: there a process that was killed is remembered for the length of its lease.
   [[nodiscard]] bool isSecondCopy(const Guid& writer) const;
   /// What is sent has its time stamps.
   [[nodiscard]] const WallClock& clock() const;
@@ -120,6 +124,9 @@ class Participant {
  private:
   std::unique_ptr<Impl> impl_;
 };
+
+/// When a process began, in the kernel's ticks since it booted; 0 where the system does not tell, or there is none.
+[[nodiscard]] std::uint64_t processBegan(int pid);
 
 /// The DDS product and its version, as in "Fast DDS 2.9.1".
 [[nodiscard]] std::string productName();

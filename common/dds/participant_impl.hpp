@@ -4,7 +4,6 @@
 #include <atomic>
 #include <map>
 #include <mutex>
-#include <set>
 #include <string>
 
 #include "dds/fastdds.hpp"
@@ -39,7 +38,7 @@ struct Participant::Impl final : fastdds::DiscoveryListener {
   mutable std::mutex mutex;  // guards what follows; discovery runs on a DDS thread
   std::map<GuidPrefix, Peer> peers;
   std::map<GuidPrefix, Peer> strangers;  // some of them
-  std::set<GuidPrefix> departed;         // members that have left
+  std::map<GuidPrefix, Peer> departed;   // members that have left
   std::map<Guid, DiscoveredWriter> writers;
   std::mutex watch_mutex;  // held while on_writer is called, so that it can be taken away; never taken after `mutex`
   WriterCallback on_writer;

@@ -41,15 +41,23 @@ bool Admission::admits(const dds::TopicFacts& topic, const dds::Guid& writer) {
   if (!participant_.hasKey()) return true;
   const auto role = participant_.roleOf(prefix);
   if (!role) {
-    const auto claim = participant_.stranger(prefix);
-    tellOnce(prefix, "a stranger writes on " + std::string(topic.name) +
-                         (claim ? " and calls itself " + claim->service : "") + ": participant " +
-                         dds::toString(prefix) + " has not the run's key and is not heard");
+    const std::string text = "a stranger writes on " + std::string(topic.name);
+    const std::string name = ": participant " + dds::toString(prefix);
+    if (const auto departed = participant_.departed(prefix)) {
+      tellOnce(prefix, text + " under the GUID of " + departed->service + name + " has left and is not heard");
+    } else {
+      const auto claim = participant_.stranger(prefix);
+      tellOnce(prefix, text + (claim ? " and calls itself " + claim->service : "") + name +
+                           " has not the run's key and is not heard");
+    }
     return false;
   }
   const auto peer = participant_.peer(prefix);
   // Nobody watches commands, and one may have been killed.
-  if (role == dds::Role::kOperator && peer && !isRunning(peer->pid)) return false;
+  if (role == dds::Role::kOperator && peer && !isRunning(*peer)) {
+    tellOnce(prefix, peer->service + " asks for something on " + topic.name + ", but its process has ended");
+    return false;
+  }
   if (mayWrite(topic.written_by, *role)) return true;
   tellOnce(prefix, (peer ? peer->service : dds::toString(prefix)) + " writes on " + topic.name +
                        ", which is not its topic, and is not heard there");
@@ -72,8 +80,9 @@ dds::WriterFilter Admission::filter(const dds::TopicFacts& topic) {
 bool Admission::speaksFor(const dds::Guid& writer, std::string_view service) const {
   const dds::GuidPrefix prefix = dds::prefixOf(writer);
   if (!participant_.hasKey() || participant_.roleOf(prefix) == dds::Role::kSupervisor) return true;
-  const auto peer = participant_.member(prefix);
-  return peer && peer->service == service;
+  if (!participant_.isMember(prefix)) return false;
+  const auto peer = participant_.peer(prefix);
+  return !peer || peer->service == service;  // its name may still be on its way
 }
 
 void Admission::met(const dds::Peer& stranger) {

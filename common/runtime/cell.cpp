@@ -149,7 +149,7 @@ dds::RunKey readKey(const std::string& file) {
 bool isOfThisUser(const dds::Peer& peer) {
   if (!isFileName(peer.run, "")) return false;  // it comes from outside
   try {
-    return isProven(peer, readKey((stateFolder() / "runs" / peer.run / "key").string())) && isRunning(peer.pid);
+    return isProven(peer, readKey((stateFolder() / "runs" / peer.run / "key").string())) && isRunning(peer);
   } catch (const Error&) {
     return false;
   }

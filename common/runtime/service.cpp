@@ -134,16 +134,23 @@ void Service::giveWayToElders() {
 void Service::peerJoined(const dds::Peer& peer) {
   if (peer.is_stranger) return admission_.met(peer);
   if (participant_.hasKey() && participant_.isMember(peer.prefix) && roleCalled(peer.service) != dds::Role::kOperator) {
-    whenEnded(executor_, peer.pid, [this, peer] {
-      participant_.bury(peer.prefix);
-      spdlog::info("{} has ended (process {})", peer.service, peer.pid);
-    });
+    whenEnded(executor_, peer, [this, peer] { buryLater(peer); });
   }
   announcer_.greet();
   checkBarrier();
   if (!gave_way_ && isRival(peer) && rivals_told_++ < kMaxStrangersTold) {
     event(msg::SEVERITY_WARNING, "intruder", "a second " + peer.service + " of run " + peer.run + "; this one goes on");
   }
+}
+
+/// What it sent before may still wait here in a socket, also where this process was stopped meanwhile.
+void Service::buryLater(const dds::Peer& peer) {
+  const auto timer = std::make_shared<asio::steady_timer>(executor_, std::chrono::seconds(1));
+  timer->async_wait([this, timer, peer](const boost::system::error_code& error) {
+    if (error) return;
+    participant_.bury(peer.prefix);
+    spdlog::info("{} has ended (process {})", peer.service, peer.pid);
+  });
 }
 
 void Service::giveWay(const std::string& why) {

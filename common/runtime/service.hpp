@@ -137,6 +137,7 @@ class Service {
   [[nodiscard]] bool isRival(const dds::Peer& peer) const;
   void giveWayToElders();
   void peerJoined(const dds::Peer& peer);
+  void buryLater(const dds::Peer& peer);
   void tellLosses();
   [[nodiscard]] std::optional<std::chrono::nanoseconds> pauseBefore(const dds::Guid& asker);
   void handleLater(const dds::Guid& asker, std::chrono::nanoseconds pause, std::function<void()> action);

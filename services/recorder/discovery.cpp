@@ -134,7 +134,9 @@ TopicReaders::Writer TopicReaders::of(std::uint32_t topic, const dds::Guid& writ
   }
   if (std::string& service = result.metadata["service"]; service.empty()) {
     // Its endpoints may have been known before the process was.
-    if (const auto peer = participant_.peer(dds::prefixOf(writer))) service = peer->service;
+    const dds::GuidPrefix prefix = dds::prefixOf(writer);
+    const auto peer = participant_.peer(prefix), departed = participant_.departed(prefix);
+    if (peer || departed) service = (peer ? peer : departed)->service;
   }
   result.metadata["type"] = result.type;
   result.metadata["writer"] = dds::toString(writer);

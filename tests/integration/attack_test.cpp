@@ -220,7 +220,10 @@ class Heir {
   template <class T>
   [[nodiscard]] bool isRefused(const dds::Topic<T>& topic, const T& message) {
     return eventually([&] {
-      return impostor_.say(topic, message) > 0 && readFile(run_.folder() / "plant.log").find(id_) != std::string::npos;
+      if (impostor_.say(topic, message) == 0) return false;
+      const std::string log = readFile(run_.folder() / "plant.log");
+      const std::size_t told = log.find("a stranger writes on " + std::string(topic.name) + " under the GUID of");
+      return told != std::string::npos && log.find(id_, told) != std::string::npos;
     });
   }
 

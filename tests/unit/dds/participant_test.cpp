@@ -197,14 +197,22 @@ TEST_F(ARunsMembers, HaveNoHeirsOnceTheyHaveLeft) {
   auto controller = std::make_unique<Participant>(options("pd", Role::kController));
   ASSERT_TRUE(isMet(*controller));
   const test::Words words = wordsOf(*controller);
-  const std::uint64_t departures = plant_.departures();
   controller.reset();
-  const test::Impostor heir(test::ownDomain(), words, test::testPartition("cell"));
-  ASSERT_TRUE(isMetAsAStranger(words));
-  EXPECT_EQ(plant_.departures(), departures + 1);
+  Inbox inbox(signal_);
+  const EndpointOptions endpoint{.topic = "heard", .type = "baton::msg::Event", .profile = Profile::kEvent};
+  RawReader reader(plant_, endpoint, [&](const RawSample& sample) { inbox.put(sample); });
+  test::Impostor heir(test::ownDomain(), words, test::testPartition("cell"));
+  // It is there, and speaks: the reader has what it says, and the plant knows better than to take it for the member.
+  const Topic<msg::Event> heard{{endpoint.topic.c_str(), endpoint.type.c_str(), endpoint.profile, {}, {}}};
+  std::ignore = heir.say(heard, msg::Event{});
+  ASSERT_TRUE(signal_.waitUntil([&] { return inbox.size() > 0; }));
+  EXPECT_EQ(prefixOf(inbox.samples().front().writer), words.prefix);
+  EXPECT_EQ(plant_.departures(), 1U);
   EXPECT_FALSE(plant_.roleOf(words.prefix));
   EXPECT_FALSE(plant_.isMember(words.prefix));
   EXPECT_FALSE(plant_.peer(words.prefix));
+  ASSERT_TRUE(plant_.departed(words.prefix));
+  EXPECT_EQ(plant_.departed(words.prefix)->service, "pd");
 }
 
 TEST_F(ARunsMembers, HaveNoneEitherWhenTheyAreDead) {
@@ -223,9 +231,9 @@ TEST_F(ARunsMembers, HaveNoneEitherWhenTheyAreDead) {
 TEST_F(ARunsMembers, AreNotTheOnesThatBearTheMarkAlone) {
   const std::string place = "baton\nunit\n" + std::to_string(getpid()) + "\n";
   for (const std::string& user_data :
-       {std::string(), std::string("something else"), place + "environment\n5\n" + std::to_string(getpid()) + "\n",
-        place + "pd\n5\n1\n" + key_.proofOf({}, place + "pd\n5\n1\n"),
-        std::string("baton\nunit\nanother-run\nplant\n5\n1\n")}) {
+       {std::string(), std::string("something else"), place + "environment\n5\n" + std::to_string(getpid()) + "\n1\n",
+        place + "pd\n5\n1\n1\n" + key_.proofOf({}, place + "pd\n5\n1\n1\n"),
+        std::string("baton\nunit\nanother-run\nplant\n5\n1\n1\n")}) {
     const test::Words words{key_.marked(plant_.self().prefix, Role::kEnvironment), user_data};
     const test::Impostor impostor(test::ownDomain(), words, test::testPartition("cell"));
     ASSERT_TRUE(isMetAsAStranger(words)) << user_data;

@@ -84,7 +84,7 @@ TEST(Admission, HearsACommandAsLongAsItsProcessRuns) {
   Admission admission(plant, false, [](const std::string&) {});
   const auto isHeard = [&](int pid) {
     const dds::GuidPrefix prefix = key.marked(plant.self().prefix, Role::kOperator);
-    const std::string fields = "baton\nlab\nrun\noperator-1\n5\n" + std::to_string(pid) + "\n";
+    const std::string fields = "baton\nlab\nrun\noperator-1\n5\n" + std::to_string(pid) + "\n0\n";
     const test::Impostor command(test::ownDomain(), {prefix, fields + key.proofOf(prefix, fields)}, "lab/run");
     std::unique_lock lock(mutex);
     EXPECT_TRUE(met.wait_for(lock, std::chrono::minutes(1), [&] { return plant.peer(prefix).has_value(); }));
