@@ -171,6 +171,7 @@ class Groups {
   [[nodiscard]] std::string problem(const std::vector<SummaryOffset>& offsets, std::uint64_t offsets_start) const {
     for (const SummaryOffset& one : offsets) {
       const auto group = groups_.find(one.group);
+      if (group == groups_.end() && one.group_length == 0) continue;  // some writers list groups that they do not have
       const auto [begin, end] = group == groups_.end() ? std::pair<std::uint64_t, std::uint64_t>{} : group->second;
       if (group != groups_.end() && begin == one.group_start && end - begin == one.group_length) continue;
       return "its summary gives " + std::to_string(one.group_length) + " bytes at byte " +
@@ -307,7 +308,7 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
                             .kind = Opcode::kChunk,
                             .indexes_length = chunk.message_index_length});
           index.extents.push_back(std::move(extent));
-          chunks.push_back(chunk);
+          if (!options.trusts_summary) chunks.push_back(chunk);
           break;
         }
         case Opcode::kAttachmentIndex:

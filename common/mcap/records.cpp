@@ -277,7 +277,8 @@ void appendDataEnd(Bytes& out, const DataEnd& data_end) {
 // Braced initialisers are evaluated from left to right, so the fields below come off the bytes in their order.
 
 Header decodeHeader(ByteView body) {
-  ByteReader in = fieldsOf(Opcode::kHeader, body);
+  ByteReader in(
+      body);  // nothing is lost with one of zeros, and an empty one may have bytes of a later version behind it
   return {.profile = in.string(), .library = in.string()};
 }
 

@@ -134,8 +134,13 @@ class Scan {
   /// decode(body) of a record outside of chunks, unless it is damaged and left out.
   template <class Decode>
   void guarded(const RecordPlace& place, Decode decode) {
+    guarded(place, place, decode);
+  }
+  /// @param part  of it, that is read.
+  template <class Decode>
+  void guarded(const RecordPlace& place, const RecordPlace& part, Decode decode) {
     const Extent extent{.offset = place.offset, .length = place.length(), .is_chunk = false};
-    (void)loader_.guarded(extent, [&] { decode(readBody(file_, place, options_, storage_)); });
+    (void)loader_.guarded(extent, [&] { decode(readBody(file_, part, options_, storage_)); });
   }
 
   /// Where the records cannot be followed any more, because none is there, because the lengths in one disagree, or
@@ -146,13 +151,14 @@ class Scan {
     const bool disagrees = place && is_data_ && isTorn(*place);
     std::optional<std::uint64_t> next;
     if (disagrees || !walk.problem().empty()) {
-      next = is_data_ ? search_.dataAfter(from, has_loose_) : search_.recordingIn(from, file_.size());
+      next = is_data_ ? dataAfter(from) : search_.recordingIn(from, file_.size());
     } else if (place) {
       next = recordingInTorn(walk, *place);
     }
     if (!next) return false;
     settle();
     if (is_data_) {  // an index can be made again
+      if (place && place->opcode == Opcode::kChunk) ++index_.statistics.chunk_count;
       lose({.offset = from,
             .length = *next - from,
             .reason = place ? whyTorn(*place, disagrees) : walk.problem(),
@@ -160,6 +166,14 @@ class Scan {
     }
     walk.moveTo(*next);
     return true;
+  }
+
+  /// Where nothing followed, nothing does later: each record of many may be torn.
+  [[nodiscard]] std::optional<std::uint64_t> dataAfter(std::uint64_t torn) {
+    if (fruitless_ == has_loose_) return std::nullopt;
+    const std::optional<std::uint64_t> next = search_.dataAfter(torn, has_loose_);
+    if (!next) fruitless_ = has_loose_;
+    return next;
   }
 
   /// Reports it, or throws it when nobody wants what is left.
@@ -247,6 +261,7 @@ class Scan {
                           .reason = "it is indexed as a chunk, and is of no known kind",
                           .chunks = 1});
       --index_.info.unknown_records;
+      ++index_.statistics.chunk_count;
       hidden_.reset();
     }
     previous_ = place.opcode;
@@ -256,7 +271,7 @@ class Scan {
     // Enough for the head; the data after it are bounded by the record's own length.
     RecordPlace front = place;
     front.body_length = std::min(place.body_length, kAttachmentHeadBytes);
-    guarded(front, [&](ByteView body) {
+    guarded(place, front, [&](ByteView body) {
       AttachmentHead head = decodeAttachmentHead(body);
       index_.attachments.push_back({.offset = place.offset,
                                     .length = place.length(),
@@ -452,6 +467,7 @@ class Scan {
   std::uint64_t data_end_ = 0;              // where the last record of the data ends
   bool is_closed_ = false;                  // its footer and its magic have been read
   bool has_loose_ = false;                  // messages outside of chunks
+  std::optional<bool> fruitless_{};         // a search found nothing to go on with, for loose messages or without
   std::string cut_;                         // the first recording that has no end, and that another one follows
   std::uint64_t cut_at_ = 0;                // where that one ends
   std::optional<std::uint64_t> torn_into_;  // the recording that begins in the chunk that was just taken
