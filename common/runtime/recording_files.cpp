@@ -25,13 +25,13 @@ namespace fs = std::filesystem;
 /// What a file says of itself.
 struct Said {
   fs::path path;
-  mcap::StringMap run;            // of which run; empty: not recorded by Baton
-  std::string profile;            // of the file's header
-  std::string first;              // of a part: the name that the first part had
-  std::optional<unsigned> index;  // of a part
-  std::string next{};             // of a part: the file in which it goes on; empty in the last
-  unsigned first_kept = 0;        // of the last part: the index of the first that was not dropped
-  std::uint64_t begin_ns = 0;     // log times
+  mcap::StringMap run;                   // of which run; empty: not recorded by Baton
+  std::string profile;                   // of the file's header
+  std::string first;                     // of a part: the name that the first part had
+  std::optional<unsigned> index;         // of a part
+  std::string next{};                    // of a part: the file in which it goes on; empty in the last
+  std::optional<unsigned> first_kept{};  // of the last part, when it was closed: the first that was not dropped
+  std::uint64_t begin_ns = 0;            // log times
   std::uint64_t end_ns = 0;
   bool has_messages = false;
 
@@ -59,7 +59,7 @@ Said askFile(const fs::path& path) {
     }
     if (one.name == "baton.part_end") said.next = mcap::valueOf(one.values, "next");
   }
-  if (said.index) said.first_kept = firstPartKept(reader);
+  if (said.index && hasCertificate(reader)) said.first_kept = firstPartKept(reader);
   if (is_copy) said.index.reset();  // a piece of a part is none
   said.begin_ns = reader.statistics().start_time_ns;
   said.end_ns = reader.statistics().end_time_ns;
@@ -197,7 +197,8 @@ std::string missingText(unsigned first, unsigned end) {
 /// @param parts  in their order, at least one.
 std::vector<std::string> holesIn(const std::vector<Said>& parts, bool with_ends) {
   std::vector<std::string> holes;
-  const unsigned first = *parts.front().index, expected = parts.back().first_kept;
+  // A recorder that was killed has not said which parts of a ring it has dropped itself.
+  const unsigned first = *parts.front().index, expected = parts.back().first_kept.value_or(first);
   if (with_ends && first > expected) {
     holes.push_back(fmt::format("{} before {}", missingText(expected, first), parts.front().path.string()));
   }
