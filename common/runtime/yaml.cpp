@@ -403,7 +403,7 @@ std::string shownNumber(double x) {
 
 std::string readYamlFile(const std::string& path) {
   int error = 0;
-  const std::string text = readFile(path, kMaxYamlBytes + 1, error);
+  std::string text = readFile(path, kMaxYamlBytes + 1, error);
   if (error != 0) throw UsageError(path + ": expected a file that can be read, found: " + std::strerror(error));
   if (const std::string other = otherFormat(text); !other.empty()) {
     throw UsageError(path + ": expected YAML, found " + other);

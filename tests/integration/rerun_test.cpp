@@ -86,7 +86,8 @@ TEST(Rerun, RepeatsTheLastTakeOfARunThatWasReset) {
   EXPECT_TRUE(bench.batonJson({"swap", "impedance", "--json"}).at("done"));
   EXPECT_TRUE(bench.batonJson({"sim", "reset", "--json"}).at("accepted"));
   run.waitForStep(50);
-  EXPECT_TRUE(bench.batonJson({"swap", "pd", "--json"}).at("done"));
+  const nlohmann::json swapped = bench.batonJson({"swap", "pd", "--json"});
+  EXPECT_TRUE(swapped.at("done")) << swapped;
   const nlohmann::json result = bench.batonJson({"down", "--json"});
   const nlohmann::json verdict = expectIdentical(bench, run.recording);
   EXPECT_EQ(verdict.at("decisions"), 2) << "the handover of this take, and its end";

@@ -83,7 +83,7 @@ TEST(StandIn, ASupervisorThatEndsWithoutAWordIsToldOfWithWhatMayBeWrong) {
   const StandIn run("baton-supervisor", "exit 1");
   const Finished finished = run.run();
   EXPECT_EQ(finished.exit_code, 3) << finished.out << finished.err;
-  EXPECT_NE(finished.err.find("is empty: expected room on that disk, and enough files"), std::string::npos)
+  EXPECT_NE(finished.err.find("is empty, as a full disk, too few files that a process may open"), std::string::npos)
       << finished.err;
 }
 

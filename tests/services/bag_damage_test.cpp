@@ -45,7 +45,7 @@ Outcome run(Words words) {
   try {
     bag.parse(words);
   } catch (const Error& error) {
-    outcome.exit_code = ExitCode::kUsage;
+    outcome.exit_code = error.code();
     outcome.err = error.what();
   }
   outcome.out = testing::internal::GetCapturedStdout();

@@ -34,7 +34,7 @@ void runGnuplot(const fs::path& folder, const std::string& argument) {
     throw UnavailableError("gnuplot is missing: install it (Debian: gnuplot-nox)");
   }
   if (error != 0) throw UnavailableError("cannot start gnuplot in " + folder.string() + ": " + std::strerror(error));
-  int how = 0;
+  int how = -1;
   while (waitpid(pid, &how, 0) < 0 && errno == EINTR) {
   }
   if (!WIFEXITED(how) || WEXITSTATUS(how) != 0) {
