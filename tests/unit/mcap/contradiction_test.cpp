@@ -139,33 +139,6 @@ TEST_F(ContradictionTest, AnIndexThatContradictsItsDataIsNotBelieved) {
   }
 }
 
-/// As the Python writer does for every kind of record that a file may have.
-TEST_F(ContradictionTest, AnOffsetForNoRecordsIsNoFault) {
-  IndexedFile file;
-  file.schema(kSchema);
-  file.channel(channelOf(1, "a"));
-  file.message(1, 1000);
-  file.closeChunk();
-  file.change_offsets = [](SummaryOffset& one, Footer&) {
-    one.group = Opcode::kAttachmentIndex;
-    one.group_length = 0;
-  };
-  saveFile(path, file.finished());
-  const Reader reader(path);
-  EXPECT_TRUE(reader.info().has_summary) << textOf(reader.info());
-  EXPECT_EQ(textOf(reader.info()), "");
-  EXPECT_TRUE(recovered().is_whole);
-}
-
-/// The conformance tests of the format have such files.
-TEST_F(ContradictionTest, AnEmptyHeaderMayHaveMoreBytes) {
-  const Bytes body(8, std::byte{0});
-  EXPECT_EQ(decodeHeader(body).library, "");
-  Bytes longer = body;
-  longer.push_back(std::byte{1});
-  EXPECT_EQ(decodeHeader(longer).profile, "");
-}
-
 TEST_F(ContradictionTest, AnIndexThatPointsNowhereIsNamed) {
   const auto nothing = [](IndexedFile&) {};
   struct Case {
