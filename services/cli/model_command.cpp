@@ -6,7 +6,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <ranges>
 #include <string>
 #include <vector>
 
@@ -47,14 +46,14 @@ Eigen::VectorXd parseNumbers(const std::string& option, const std::vector<std::s
                              const std::string& each) {
   if (words.empty()) return Eigen::VectorXd::Zero(size);
   const auto count = static_cast<std::size_t>(size);
-  const auto commasOf = [](const std::string& word) { return std::ranges::count(word, ','); };
-  const auto commas = std::ranges::max(words | std::views::transform(commasOf));
+  const std::string given = fmt::format("{}", fmt::join(words, " "));
+  const auto commas = std::ranges::count(given, ',');
   const std::size_t found = words.size() > 1 ? words.size() : static_cast<std::size_t>(commas) + 1;
   if (found != count || (words.size() > 1 && commas > 0)) {
-    throw UsageError(fmt::format(
-        "{}: expected {} numbers, one per {}, with spaces or with commas between them, found "
-        "{}: {}{}",
-        option, size, each, found, fmt::join(words, " "), commas > 0 ? "; the decimal sign is a point" : ""));
+    throw UsageError(
+        fmt::format("{}: expected {} numbers, one per {}, with spaces or with commas between them, found "
+                    "{}: {}{}",
+                    option, size, each, found, given, commas > 0 ? "; the decimal sign is a point" : ""));
   }
   const std::string list = fmt::format("[{}]", fmt::join(words, ", "));
   const std::vector<double> values = YamlNode::parse(option, list).numbers(count, {}, each);
