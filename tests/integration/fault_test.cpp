@@ -273,7 +273,8 @@ TEST(Fault, ADeadControllerIsStartedAgainToStandBy) {
     return false;
   }));
   // It can hold the baton again, and the certificate does not vouch for what the dead process sent.
-  EXPECT_TRUE(bench.batonJson({"swap", "pd", "--json"}).at("done"));
+  const nlohmann::json swapped = bench.batonJson({"swap", "pd", "--force", "--json"});
+  EXPECT_TRUE(swapped.at("done")) << swapped;
   const nlohmann::json result = bench.batonJson({"down", "--json"});
   EXPECT_FALSE(result.at("recording").at("complete"));
   EXPECT_NE(result.at("reason").get<std::string>().find("pd"), std::string::npos) << result;
