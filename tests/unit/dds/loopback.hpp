@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "dds/fastdds.hpp"
 #include "dds/participant.hpp"
 #include "dds/types.hpp"
 #include "support/own_domain.hpp"
@@ -20,12 +19,6 @@ namespace baton::test {
 inline std::string testPartition(const std::string& name) { return "unit-" + std::to_string(getpid()) + "/" + name; }
 
 inline dds::ParticipantOptions memberOptions(const std::string& service, const std::string& partition) {
-  // By default endpoints of one process hand samples over without the transport.
-  static const bool through_the_transport = [] {
-    fastdds::deliverThroughTheTransport();
-    return true;
-  }();
-  (void)through_the_transport;
   return {.domain = ownDomain(),
           .partition = testPartition(partition),
           .cell = "unit",
