@@ -7,8 +7,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <sstream>
 #include <tuple>
@@ -22,6 +20,7 @@
 #include "dds/interfaces.hpp"
 #include "dds/lossy_transport.hpp"
 #include "dds/participant_impl.hpp"
+#include "dds/process.hpp"
 #include "dds/raw_type.hpp"
 
 namespace baton::dds {
@@ -273,9 +272,20 @@ void Participant::Impl::onParticipant(const fastdds::ParticipantData& data) {
   const bool is_ours = peer->cell == self.cell && peer->run == self.run;
   const bool is_proven = key && is_ours && isProven(*peer, *key);
   peer->is_stranger = key && (is_ours || is_marked) && !is_proven;
+  const bool is_new = [&] {
+    const std::lock_guard lock(mutex);
+    return !peers.contains(prefix) && !departed.contains(prefix);
+  }();
+  // Who was a service of our run and is dead when we first hear of it is another, under its GUID.
+  const bool is_heir =
+      is_new && is_proven && key->roleOf(prefix) != Role::kOperator && !isRunning(peer->pid, peer->process_began);
   {
     const std::lock_guard lock(mutex);
     if (departed.contains(prefix)) return;  // an announcement that comes late, or an heir's: nobody hears it
+    if (is_heir && departed.try_emplace(prefix, *peer).second) {
+      ++departures;
+      return;
+    }
     auto& known = peer->is_stranger ? strangers : peers;
     if (const auto found = known.find(prefix); found != known.end() && found->second == *peer) return;  // said again
     if (is_marked && peers.contains(prefix)) return;                   // a member is who it was when it came
@@ -430,18 +440,6 @@ std::vector<DiscoveredWriter> Participant::writers() const {
   std::vector<DiscoveredWriter> result;
   for (const auto& [guid, writer] : impl_->writers) result.push_back(writer);
   return result;
-}
-
-std::uint64_t processBegan(int pid) {
-  std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
-  const std::string text((std::istreambuf_iterator<char>(stat)), {});
-  if (text.empty()) return 0;
-  // "pid (name) state ...": the name may have blanks and brackets. The time is the twentieth word after it.
-  std::istringstream words(text.substr(std::min(text.rfind(')'), text.size() - 1) + 1));
-  std::string skipped;
-  for (int i = 0; i < 19; ++i) words >> skipped;
-  std::uint64_t ticks = 0;
-  return words >> ticks ? ticks : 0;
 }
 
 std::string productName() { return std::string("Fast DDS ") + fastdds::kVersion; }

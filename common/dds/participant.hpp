@@ -125,9 +125,6 @@ class Participant {
   std::unique_ptr<Impl> impl_;
 };
 
-/// When a process began, in the kernel's ticks since it booted; 0 where the system does not tell, or there is none.
-[[nodiscard]] std::uint64_t processBegan(int pid);
-
 /// The DDS product and its version, as in "Fast DDS 2.9.1".
 [[nodiscard]] std::string productName();
 

@@ -44,7 +44,8 @@ bool Admission::admits(const dds::TopicFacts& topic, const dds::Guid& writer) {
     const std::string text = "a stranger writes on " + std::string(topic.name);
     const std::string name = ": participant " + dds::toString(prefix);
     if (const auto departed = participant_.departed(prefix)) {
-      tellOnce(prefix, text + " under the GUID of " + departed->service + name + " has left and is not heard");
+      tellOnce(prefix, text + " under the GUID of " + departed->service + name +
+                           " has left, or its process cannot be seen from here, and is not heard");
     } else {
       const auto claim = participant_.stranger(prefix);
       tellOnce(prefix, text + (claim ? " and calls itself " + claim->service : "") + name +

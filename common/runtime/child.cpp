@@ -17,7 +17,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
-#include "runtime/processes.hpp"
+#include "dds/process.hpp"
 
 namespace baton {
 namespace asio = boost::asio;
@@ -70,7 +70,7 @@ Child::Child(asio::io_context& executor, Command command, std::function<void(Chi
   close(log);
   if (error) throw UnavailableError("cannot start " + command_.program.string() + ": " + error.message());
   pid_ = handle.id();
-  const int pidfd = openPidfd(pid_);
+  const int pidfd = dds::openPidfd(pid_);
   if (pidfd < 0) {
     const std::string reason = std::strerror(errno);
     handle.terminate();

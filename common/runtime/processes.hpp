@@ -1,4 +1,4 @@
-/// Other processes of this machine, watched without being their parent.
+/// Processes of a run, watched by the others.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -7,9 +7,6 @@
 #include "dds/participant.hpp"
 
 namespace baton {
-
-/// A descriptor that becomes readable when the process ends; -1, with the reason in errno, when there is none.
-[[nodiscard]] int openPidfd(int pid);
 
 /// Whether the process of a member of the run still runs, and is not another with the same number.
 [[nodiscard]] bool isRunning(const dds::Peer& peer);

@@ -2,6 +2,9 @@
 #include "dds/participant.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -21,6 +24,7 @@
 
 #include "base/error.hpp"
 #include "dds/endpoint.hpp"
+#include "dds/process.hpp"
 #include "loopback.hpp"
 #include "support/impostor.hpp"
 
@@ -224,6 +228,29 @@ TEST_F(ARunsMembers, HaveNoneEitherWhenTheyAreDead) {
   EXPECT_FALSE(plant_.isMember(prefix));
   EXPECT_FALSE(plant_.peer(prefix));
   plant_.bury(prefix);
+  EXPECT_EQ(plant_.departures(), 1U);
+}
+
+/// What a dead one said of itself can be said again, with its proof, to whoever has not met it.
+TEST_F(ARunsMembers, AreNotThoseWhoWereDeadBeforeTheyCame) {
+  const pid_t child = fork();
+  while (child == 0) pause();
+  const std::string words = "baton\nunit\n" + std::to_string(getpid()) + "\npd\n5\n" + std::to_string(child) + "\n" +
+                            std::to_string(processBegan(child)) + "\n";
+  ASSERT_EQ(kill(child, SIGKILL), 0);
+  ASSERT_EQ(waitpid(child, nullptr, 0), child);
+  const GuidPrefix prefix = key_.marked(plant_.self().prefix, Role::kController);
+  Inbox inbox(signal_);
+  const EndpointOptions endpoint{.topic = "heard", .type = "baton::msg::Event", .profile = Profile::kEvent};
+  RawReader reader(plant_, endpoint, [&](const RawSample& sample) { inbox.put(sample); });
+  test::Impostor heir(test::ownDomain(), {prefix, words + key_.proofOf(prefix, words)}, test::testPartition("cell"));
+  const Topic<msg::Event> heard{{endpoint.topic.c_str(), endpoint.type.c_str(), endpoint.profile, {}, {}}};
+  std::ignore = heir.say(heard, msg::Event{});
+  ASSERT_TRUE(signal_.waitUntil([&] { return inbox.size() > 0; }));
+  ASSERT_TRUE(plant_.departed(prefix));
+  EXPECT_EQ(plant_.departed(prefix)->service, "pd");
+  EXPECT_FALSE(plant_.isMember(prefix));
+  EXPECT_FALSE(plant_.peer(prefix));
   EXPECT_EQ(plant_.departures(), 1U);
 }
 

@@ -7,6 +7,8 @@
 
 #include <boost/asio/io_context.hpp>
 
+#include "dds/process.hpp"
+
 namespace baton {
 namespace {
 
