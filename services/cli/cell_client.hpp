@@ -39,7 +39,9 @@ class CellClient {
   std::vector<T> collect(
       const dds::Topic<T>& topic, const std::function<bool(const std::vector<T>&)>& enough,
       std::chrono::milliseconds patience = kPatience,
-      const std::function<bool(const dds::RawSample&)>& accept = [](const auto&) { return true; });
+      const std::function<bool(const T&, const dds::RawSample&)>& accept = [](const auto&, const auto&) {
+        return true;
+      });
 
   /// The newest sample of a topic with one writer, or nothing within `patience`.
   template <class T>
@@ -59,6 +61,10 @@ class CellClient {
                             const dds::Topic<Answer>& answer_topic, const std::function<bool(const Answer&)>& is_answer,
                             const std::string& service, std::chrono::milliseconds patience = kPatience);
 
+  /// Whether the writer of this sample is that service, or the supervisor.
+  [[nodiscard]] bool speaksFor(const dds::RawSample& sample, std::string_view service) const {
+    return admission_.speaksFor(sample.writer, service);
+  }
   /// The processes of the domain that discovery has told of so far.
   [[nodiscard]] std::vector<dds::Peer> peers() const { return participant_.peers(); }
   [[nodiscard]] const RunInfo& info() const { return info_; }
@@ -78,12 +84,12 @@ class CellClient {
 template <class T>
 std::vector<T> CellClient::collect(const dds::Topic<T>& topic, const std::function<bool(const std::vector<T>&)>& enough,
                                    std::chrono::milliseconds patience,
-                                   const std::function<bool(const dds::RawSample&)>& accept) {
+                                   const std::function<bool(const T&, const dds::RawSample&)>& accept) {
   std::vector<T> samples;
   const dds::Reader<T> reader(
       participant_, topic,
       [&](const T& message, const dds::RawSample& sample) {
-        if (!accept(sample)) return;
+        if (!accept(message, sample)) return;
         const std::lock_guard lock(mutex_);
         samples.push_back(message);
         changed_.notify_all();
@@ -98,7 +104,7 @@ template <class T>
 std::optional<T> CellClient::latest(const dds::Topic<T>& topic, std::chrono::milliseconds patience) {
   const std::vector<T> samples = collect<T>(
       topic, [](const std::vector<T>& all) { return !all.empty(); }, patience,
-      [this](const dds::RawSample& sample) { return !participant_.isSecondCopy(sample.writer); });
+      [this](const T&, const dds::RawSample& sample) { return !participant_.isSecondCopy(sample.writer); });
   return samples.empty() ? std::nullopt : std::optional(samples.back());
 }
 

@@ -32,7 +32,9 @@ std::map<std::string, T> latestByName(CellClient& client, const dds::Topic<T>& t
     const auto latest = byName(all);
     return std::all_of(expected.begin(), expected.end(), [&](const auto& name) { return latest.contains(name); });
   };
-  return byName(client.collect<T>(topic, hasAll, CellClient::kStatusPatience));
+  return byName(client.collect<T>(
+      topic, hasAll, CellClient::kStatusPatience,
+      [&](const T& one, const dds::RawSample& sample) { return client.speaksFor(sample, one.name().c_str()); }));
 }
 
 }  // namespace baton
