@@ -4,8 +4,11 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <sstream>
+#include <tuple>
 #include <utility>
 
 #include "base/error.hpp"
@@ -25,9 +28,11 @@ fs::path cellsFolder() {
   return folder;
 }
 
-fs::path cellFile(int domain, const std::string& cell) {
-  return cellsFolder() / (std::to_string(domain) + "-" + cell + ".json");
+std::string lockName(int domain, const std::string& cell, const char* extension) {
+  return std::to_string(domain) + "-" + cell + extension;
 }
+
+fs::path cellFile(int domain, const std::string& cell) { return cellsFolder() / lockName(domain, cell, ".json"); }
 
 std::optional<RunInfo> readInfo(const fs::path& file) {
   try {
@@ -66,6 +71,11 @@ struct flock wholeFile() {
   return lock;
 }
 
+bool lock(int descriptor) {
+  struct flock lock = wholeFile();
+  return fcntl(descriptor, F_OFD_SETLK, &lock) == 0;
+}
+
 /// Whether somebody holds the lock on this file.
 bool isHeld(const fs::path& file) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
@@ -87,8 +97,7 @@ CellLock::CellLock(const RunInfo& info) : file_(cellFile(info.domain, info.cell)
   if (descriptor_ < 0) {
     throw UnavailableError("cannot open " + file_.string() + ": " + std::strerror(errno));
   }
-  struct flock lock = wholeFile();
-  if (fcntl(descriptor_, F_OFD_SETLK, &lock) != 0) {
+  if (!lock(descriptor_)) {
     close(descriptor_);
     const std::optional<RunInfo> other = readInfo(file_);
     throw UnavailableError("cell " + info.cell + " of domain " + std::to_string(info.domain) + " is in use" +
@@ -108,6 +117,35 @@ CellLock::CellLock(const RunInfo& info) : file_(cellFile(info.domain, info.cell)
 }
 
 CellLock::~CellLock() { close(descriptor_); }
+
+PlantLock::PlantLock(int domain, const std::string& cell, const std::string& run) {
+  fs::path file;
+  try {
+    file = cellsFolder() / lockName(domain, cell, ".plant");
+  } catch (const Error&) {
+    return;
+  }
+  descriptor_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (descriptor_ < 0) return;
+  if (lock(descriptor_)) {
+    const std::string text = run + "\n" + std::to_string(getpid()) + "\n";
+    if (ftruncate(descriptor_, 0) == 0) std::ignore = pwrite(descriptor_, text.data(), text.size(), 0);
+    return;
+  }
+  const bool is_held = errno == EAGAIN || errno == EACCES;
+  std::array<char, 256> said{};  // whose it is; by who took it just now not yet
+  const bool is_said = is_held && pread(descriptor_, said.data(), said.size() - 1, 0) > 0;
+  close(std::exchange(descriptor_, -1));
+  std::istringstream lines(said.data());
+  std::string other, pid;
+  if (!is_said || !std::getline(lines, other) || !std::getline(lines, pid) || other == run) return;
+  throw UnavailableError("cell " + cell + " of domain " + std::to_string(domain) + " has a plant of run " + other +
+                         " already, process " + pid + ": end it, or choose another --cell");
+}
+
+PlantLock::~PlantLock() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
 
 std::optional<RunInfo> activeRun(int domain, const std::string& cell) {
   const fs::path file = cellFile(domain, cell);

@@ -41,6 +41,21 @@ class CellLock {
   int descriptor_ = -1;
 };
 
+/// Held by the plant of a run for as long as its process lives, so that a plant whose supervisor has gone keeps its
+/// cell. Discovery alone tells of it later, of a plant elsewhere, of a second one of the same run, and where there is
+/// no folder for locks.
+class PlantLock {
+ public:
+  /// Throws UnavailableError, naming run and process, when a plant of another run has the cell.
+  PlantLock(int domain, const std::string& cell, const std::string& run);
+  ~PlantLock();
+  PlantLock(const PlantLock&) = delete;
+  PlantLock& operator=(const PlantLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
 /// The run that holds a cell now, if any.
 [[nodiscard]] std::optional<RunInfo> activeRun(int domain, const std::string& cell);
 
