@@ -29,14 +29,15 @@ std::filesystem::path presentPath(std::filesystem::path path, OutputFile::IfExis
   return path;
 }
 
-int openOutput(const std::filesystem::path& path, bool is_own) {
+int openOutput(const std::filesystem::path& path, bool is_own, bool is_draft) {
   const int existing = is_own ? O_EXCL : O_TRUNC;
   const int fd = resumed([&] { return ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | existing, 0644); });
   if (fd >= 0) return fd;
   const int error = errno;
   if (error == EEXIST) {
-    throw UnavailableError(path.string() +
-                           " is there already and is not overwritten: choose another name or remove it");
+    throw UnavailableError(path.string() + " is there already and is not overwritten: " +
+                           (is_draft ? "it is being written, or a command that was killed has left it; remove it then"
+                                     : "choose another name or remove it"));
   }
   throw UnavailableError("cannot create " + path.string() + ": " + errorText(error));
 }
@@ -69,7 +70,7 @@ OutputFile::OutputFile(std::filesystem::path path, IfExists if_exists)
     : path_(std::move(path)),
       present_path_(presentPath(path_, if_exists)),
       is_own_(if_exists == IfExists::kRefuse || present_path_ != path_),
-      fd_(openOutput(present_path_, is_own_)) {}
+      fd_(openOutput(present_path_, is_own_, present_path_ != path_)) {}
 
 OutputFile::~OutputFile() {
   if (isDraft()) discard();
