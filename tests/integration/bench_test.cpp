@@ -86,6 +86,18 @@ TEST(SwapBench, MeasuresHandoversInBothModes) {
   EXPECT_NE(finished.err.find("asked to effect"), std::string::npos) << finished.err;  // the table
 }
 
+TEST(RestBench, MeasuresCellsThatArePaused) {
+  const Bench bench;
+  const Finished finished =
+      runProgram(programFolder() / "baton-bench-rest", {"--cells", "2", "--seconds", "1", "--json"}, bench.folder());
+  ASSERT_EQ(finished.exit_code, 0) << finished.err;
+  const nlohmann::json report = nlohmann::json::parse(finished.out);
+  EXPECT_EQ(report.at("processes"), 2 * 7) << "the supervisor and six services each";
+  EXPECT_GT(report.at("started_s"), 0.0);
+  EXPECT_GE(report.at("cpu_cores"), 0.0);
+  EXPECT_GT(report.at("beside_startup_s"), 0.0);
+}
+
 TEST(RecordingBench, MeasuresWriterAndReader) {
   const Bench bench;
   const Finished finished = runProgram(
