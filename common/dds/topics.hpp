@@ -109,6 +109,9 @@ static_assert(std::ranges::all_of(kAll,
 }  // namespace topics
 #undef BATON_TOPICS
 
+/// Whether a topic is none of Baton's.
+[[nodiscard]] constexpr bool isForeignTopic(std::string_view name) { return topics::called(name) == nullptr; }
+
 /// Whether a topic of Baton's carries states: only a writer's latest sample counts. Of the others, and of all topics of
 /// other people whatever their names, every sample matters.
 [[nodiscard]] constexpr bool isStatusTopic(std::string_view name) {

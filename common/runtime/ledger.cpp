@@ -75,7 +75,9 @@ void Ledger::passOver(Stream& booked, std::uint64_t first_sequence, std::uint64_
 
 void Ledger::note(Stream& stream, std::uint64_t first_sequence, std::uint64_t last_sequence, const char* reason) {
   stream.second.missing += last_sequence - first_sequence + 1;
-  if (mayLack(stream.first.first) || gaps_.size() == kMaxGaps) return;
+  // Others must not fill the list.
+  const std::size_t most = isRemarked(stream.first.first) ? kMaxGaps / 2 : kMaxGaps;
+  if (mayLack(stream.first.first) || gaps_.size() >= most) return;
   gaps_.push_back({stream.first, first_sequence, last_sequence, reason});
 }
 
@@ -124,7 +126,7 @@ std::vector<std::string> Ledger::unvouched(const std::set<Key>& vouched) const {
 std::uint64_t Ledger::missing() const {
   std::uint64_t total = 0;
   for (const auto& [key, stream] : streams_) {
-    if (!mayLack(key.first)) total += stream.missing;
+    if (!mayLack(key.first) && !isRemarked(key.first)) total += stream.missing;
   }
   return total;
 }
@@ -163,21 +165,33 @@ std::vector<std::string> Ledger::problems() const {
   }
   const std::set<Key> vouched = vouchedFor();
   for (std::string& problem : unvouched(vouched)) result.push_back(std::move(problem));
-  for (std::string& problem : gapsBut(vouched)) result.push_back(std::move(problem));
+  for (std::string& problem : gaps(false, vouched)) result.push_back(std::move(problem));
   return result;
 }
 
-std::vector<std::string> Ledger::problemsSoFar() const { return gapsBut({}); }
+std::vector<std::string> Ledger::problemsSoFar() const { return gaps(false, {}); }
 
-/// What is missing of streams other than these, of which is known already; and what concerns none in particular.
-std::vector<std::string> Ledger::gapsBut(const std::set<Key>& known) const {
-  std::vector<std::string> result(unrecordable_.begin(), unrecordable_.end());
+std::vector<std::string> Ledger::remarks() const { return gaps(true, {}); }
+
+bool Ledger::isRemarked(const std::string& topic) const { return are_foreign_remarked_ && dds::isForeignTopic(topic); }
+
+/// What is missing on topics that are remarked, or on those that are not: of streams other than these, of which is
+/// known already, and what concerns none in particular.
+std::vector<std::string> Ledger::gaps(bool remarked, const std::set<Key>& but) const {
+  std::vector<std::string> result;
+  for (const auto& [topic, what] : unrecordable_) {
+    if (isRemarked(topic) == remarked) result.push_back(what);
+  }
   std::uint64_t dropped = 0;
-  for (const auto& [key, stream] : streams_) dropped += stream.excused == 0 ? stream.dropped : 0;
-  if (dropped > 0) result.push_back(std::to_string(dropped) + " samples came faster than they could be written");
+  for (const auto& [key, stream] : streams_) {
+    if (stream.excused == 0 && !isRemarked(key.first)) dropped += stream.dropped;
+  }
+  if (dropped > 0 && !remarked)
+    result.push_back(std::to_string(dropped) + " samples came faster than they could be written");
   for (const auto& [key, stream] : streams_) {
     const std::uint64_t missing = stream.missing - std::min(stream.missing, stream.excused);
-    if (missing == 0 || mayLack(key.first) || known.contains(key) || left_out_.contains(key.first)) continue;
+    if (missing == 0 || isRemarked(key.first) != remarked || mayLack(key.first)) continue;
+    if (but.contains(key) || left_out_.contains(key.first)) continue;
     result.push_back(key.first + " of " + dds::toString(key.second) + ": " + std::to_string(missing) +
                      " samples are missing");
   }
@@ -276,43 +290,66 @@ void Ledger::excuse(const std::string& certificate) {
   });
 }
 
-std::vector<std::string> Ledger::disagreements(const std::string& certificate_text) const {
+/// Of the streams whose topics are remarked, or of the others.
+std::vector<std::string> Ledger::differences(const Json& certificate_json, bool remarked) const {
   std::vector<std::string> result;
   const auto rowsOf = [](const Json& certificate) {
     std::map<std::pair<std::string, std::string>, Json> rows;
     for (const Json& row : certificate.at("streams")) rows[{row.at("topic"), row.at("writer")}] = row;
     return rows;
   };
+  auto their_rows = rowsOf(certificate_json);
+  for (const auto& [key, row] : rowsOf(Json::parse(certificate()))) {
+    const std::string what = key.first + " of writer " + key.second;
+    const Json their_row = std::exchange(their_rows[key], {});
+    if (isRemarked(key.first) != remarked) continue;
+    if (their_row.is_null()) {
+      result.push_back("the certificate does not know " + what);
+      continue;
+    }
+    if (row.at("count") > 0 &&
+        their_row.value("lost_before", std::uint64_t{0}) >= row.at("first_sequence").get<std::uint64_t>()) {
+      result.push_back("the certificate says of " + what +
+                       " that more was lost before its first sample than there was");
+    }
+    for (const auto& [field, value] : row.items()) {
+      if (their_row.value(field, Json()) == value) continue;
+      result.push_back("the certificate says otherwise of " + what + ": " + field + " " +
+                       their_row.value(field, Json()).dump() + ", the bytes give " + value.dump());
+      break;
+    }
+  }
+  for (const auto& [key, row] : their_rows) {
+    if (row.is_null() || isRemarked(key.first) != remarked || row.value("count", std::uint64_t{0}) == 0) continue;
+    result.push_back("the certificate knows " + key.first + " of writer " + key.second + ", which is not there");
+  }
+  return result;
+}
+
+std::vector<std::string> Ledger::disagreements(const std::string& certificate_text) const {
   try {
-    const Json theirs = Json::parse(certificate_text), ours = Json::parse(certificate());
-    auto their_rows = rowsOf(theirs);
-    for (const auto& [key, row] : rowsOf(ours)) {
-      const std::string what = key.first + " of writer " + key.second;
-      const Json their_row = std::exchange(their_rows[key], {});
-      if (their_row.is_null()) {
-        result.push_back("the certificate does not know " + what);
-        continue;
-      }
-      if (row.at("count") > 0 &&
-          their_row.value("lost_before", std::uint64_t{0}) >= row.at("first_sequence").get<std::uint64_t>()) {
-        result.push_back("the certificate says of " + what +
-                         " that more was lost before its first sample than there was");
-      }
-      for (const auto& [field, value] : row.items()) {
-        if (their_row.value(field, Json()) == value) continue;
-        result.push_back("the certificate says otherwise of " + what + ": " + field + " " +
-                         their_row.value(field, Json()).dump() + ", the bytes give " + value.dump());
-        break;
-      }
-    }
-    for (const auto& [key, row] : their_rows) {
-      if (!row.is_null() && row.value("count", std::uint64_t{0}) > 0)
-        result.push_back("the certificate knows " + key.first + " of writer " + key.second + ", which is not there");
-    }
+    const Json theirs = Json::parse(certificate_text);
+    std::vector<std::string> result = differences(theirs, false);
     if (theirs.at("complete").get<bool>() && !isComplete())
       result.emplace_back("the certificate says complete, the bytes do not");
+    return result;
   } catch (const Json::exception& error) {
-    result.push_back(std::string("the certificate cannot be read: ") + error.what());
+    return {std::string("the certificate cannot be read: ") + error.what()};
+  }
+}
+
+std::vector<std::string> Ledger::certifiedRemarks(const std::string& certificate_text) const {
+  std::vector<std::string> result;
+  try {
+    const Json theirs = Json::parse(certificate_text);
+    if (theirs.contains("remarks")) {
+      result = theirs.at("remarks").get<std::vector<std::string>>();
+    } else {
+      result = remarks();
+    }
+    for (std::string& text : differences(theirs, true)) result.push_back(std::move(text));
+  } catch (const Json::exception& error) {
+    result.push_back(std::string("the certificate's remarks cannot be read: ") + error.what());
   }
   return result;
 }

@@ -61,10 +61,13 @@ class Ledger {
   void dropped(Stream& booked, std::uint64_t first_sequence, std::uint64_t last_sequence);
   /// Of these none is missing: they had no data, or their writer had replaced them before it was found.
   void passOver(Stream& booked, std::uint64_t first_sequence, std::uint64_t last_sequence);
+  /// The account is that of a run: what is lost on foreign topics, those that are none of Baton's, is remarked from now
+  /// on. It takes nothing from the verdict, which is on the run.
+  void remarkForeignTopics() { are_foreign_remarked_ = true; }
   /// Nothing is asked about this topic: it is left out on purpose.
   void leaveOut(const std::string& topic) { left_out_.insert(topic); }
-  /// Something that ought to be in the recording cannot be.
-  void cannotRecord(const std::string& what) { unrecordable_.insert(what); }
+  /// Something of this topic that ought to be in the recording cannot be. Without a topic it is of foreign ones.
+  void cannotRecord(const std::string& topic, const std::string& what) { unrecordable_.insert({topic, what}); }
   void addManifest(const msg::ServiceManifest& manifest);
 
   /// Another service has joined, of whom a manifest is to be expected.
@@ -83,6 +86,12 @@ class Ledger {
   [[nodiscard]] std::vector<std::string> problems() const;
   /// The same in the middle of a run, when nobody has said what was sent: what came has to be without gaps.
   [[nodiscard]] std::vector<std::string> problemsSoFar() const;
+  /// One sentence for each thing that is missing of foreign topics, when these are remarked.
+  [[nodiscard]] std::vector<std::string> remarks() const;
+  [[nodiscard]] bool isRemarked(const std::string& topic) const;
+  /// The remarks in a certificate, those of the bytes where it has none, and one for each foreign topic of which it
+  /// says otherwise than certificate().
+  [[nodiscard]] std::vector<std::string> certifiedRemarks(const std::string& certificate) const;
   /// The certificate as JSON text: verdict, problems, one row a stream.
   [[nodiscard]] std::string certificate() const;
   /// What a certificate says is not in the files on purpose is not missed in them: topics, pauses, what came before
@@ -90,7 +99,7 @@ class Ledger {
   void excuse(const std::string& certificate);
   /// The sum over a stream's payloads begins with this one: what came before is gone, on purpose.
   void beginAt(const std::string& certificate);
-  /// One sentence for each thing that this certificate says otherwise than certificate().
+  /// One sentence for each thing that this certificate says otherwise than certificate(), but for remarked topics.
   [[nodiscard]] std::vector<std::string> disagreements(const std::string& certificate) const;
   /// A row of it.
   [[nodiscard]] nlohmann::ordered_json rowOf(const Stream& booked) const;
@@ -109,14 +118,16 @@ class Ledger {
   [[nodiscard]] std::set<Key> vouchedFor() const;
   [[nodiscard]] std::vector<std::string> unvouched(const std::set<Key>& vouched) const;
   [[nodiscard]] std::vector<std::string> problemsOf(const msg::ServiceManifest& manifest) const;
-  [[nodiscard]] std::vector<std::string> gapsBut(const std::set<Key>& known) const;
+  [[nodiscard]] std::vector<std::string> differences(const nlohmann::json& certificate, bool remarked) const;
+  [[nodiscard]] std::vector<std::string> gaps(bool remarked, const std::set<Key>& but) const;
 
   std::set<std::string> services_;
   std::set<std::string> given_up_;
   std::map<Key, ReceivedStream> streams_;
   std::vector<Gap> gaps_;
   std::set<std::string> left_out_;
-  std::set<std::string> unrecordable_;
+  std::set<std::pair<std::string, std::string>> unrecordable_;  // topic, sentence
+  bool are_foreign_remarked_ = false;
   struct Testimony {
     std::uint64_t count = 0;
     std::uint64_t hash = 0;

@@ -79,6 +79,7 @@ struct RecordingConfig {
   bool starts_stopped = false;                       // waits for `record start`
   std::vector<std::string> topics;                   // patterns; empty: all topics
   std::vector<std::string> except;                   // patterns of those that are left out
+  bool takes_foreign = true;                         // also topics that are none of Baton's
   std::uint64_t split_bytes = 0;                     // a part that has grown to this is followed by another; 0: never
   std::uint64_t split_steps = 0;                     // likewise, by steps of the run
   [[nodiscard]] bool isSplit() const { return split_bytes > 0 || split_steps > 0; }

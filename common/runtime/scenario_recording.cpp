@@ -73,8 +73,9 @@ void requireTogether(const YamlMap& map, const RecordingConfig& recording) {
 }  // namespace
 
 const std::vector<std::string>& recordingShapeKeys() {
-  static const std::vector<std::string> kKeys{"level",   "chunk_kB", "start",   "topics", "except",    "split_MB",
-                                              "split_s", "ring_s",   "ring_MB", "max_MB", "when_full", "min_free_MB"};
+  static const std::vector<std::string> kKeys{"level",   "chunk_kB",  "start",      "topics", "except",
+                                              "foreign", "split_MB",  "split_s",    "ring_s", "ring_MB",
+                                              "max_MB",  "when_full", "min_free_MB"};
   return kKeys;
 }
 
@@ -89,6 +90,7 @@ void readRecordingShape(const YamlMap& map, const Scenario& scenario, RecordingC
   }
   recording.topics = readPatterns(map, "topics");
   recording.except = readPatterns(map, "except");
+  if (const auto foreign = map.find("foreign")) recording.takes_foreign = foreign->boolean();
   constexpr double kLeast_MB = 0.001;
   recording.split_bytes = readMegabytes(map, "split_MB", kLeast_MB, 0);
   recording.split_steps = readStepsOr(map, "split_s", scenario);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "dds/topics.hpp"
 #include "discovery.hpp"
 #include "runtime/latched.hpp"
 #include "runtime/ledger.hpp"
@@ -26,6 +27,7 @@ inline void introduce(Stream& stream, std::size_t index, const TopicReaders::Wri
   stream.type = facts.type;
   stream.metadata = facts.metadata;
   stream.facts = batonTopic(facts.topic, facts.metadata);
+  stream.is_foreign = dds::isForeignTopic(facts.topic);
   const bool is_kept = repeats && (facts.lasts || announcesReset(stream.facts));
   stream.latched = is_kept ? latchedDepth(facts.topic, facts.metadata) : 0;
   stream.lasts = facts.lasts;

@@ -70,7 +70,11 @@ void Certificate::add(const Stream& stream, RecordedStream recorded) {
 }
 
 std::string Certificate::summary() const {
-  const std::string hint = unmatched_.empty() ? "" : fmt::format("; no topic matches {}", fmt::join(unmatched_, ", "));
+  std::string hint = unmatched_.empty() ? "" : fmt::format("; no topic matches {}", fmt::join(unmatched_, ", "));
+  if (const std::vector<std::string> remarks = ledger_.remarks(); !remarks.empty()) {
+    hint += "; not of the run: " + remarks.front();
+    if (remarks.size() > 1) hint += fmt::format("; {} more remarks", remarks.size() - 1);
+  }
   if (!isComplete()) return "incomplete: " + problems_.front() + hint;
   std::vector<std::string> but;
   for (const Hole& hole : holes_) {
@@ -110,6 +114,7 @@ std::string Certificate::text() const {
   }
   return toText(Json{{"complete", isComplete()},
                      {"problems", problems_},
+                     {"remarks", ledger_.remarks()},
                      {"run_is_over", ending_.run_is_over},
                      {"ended", ending_.reason},
                      {"from_step", from_step_},

@@ -4,9 +4,12 @@
 #include <boost/asio/post.hpp>
 
 #include "base/error.hpp"
+#include "dds/topics.hpp"
 
 namespace baton {
 namespace {
+
+constexpr std::size_t kMaxFound = 10'000;  // names of topics: strangers must not fill the memory
 
 /// What eProsima's DDS Record & Replay keeps of a writer's QoS, and reads: whoever stands in for it must share these.
 std::string qosYaml(const dds::DiscoveredWriter& writer) {
@@ -31,21 +34,43 @@ TopicReaders::~TopicReaders() {
 void TopicReaders::watch() {
   participant_.watchWriters([this](const dds::DiscoveredWriter& writer) {
     if (dds::prefixOf(writer.guid) == participant_.self().prefix || !rules_.is_wanted(writer)) return;
-    noteWriter(writer);
+    if (!noteWriter(writer)) return;
     boost::asio::post(executor_, [this, writer] { writerFound(writer); });
   });
 }
 
 void TopicReaders::stopWatching() { participant_.watchWriters({}); }
 
-void TopicReaders::refuse(const std::string& text) {
+void TopicReaders::refuse(const std::string& topic, const std::string& text) {
   const std::lock_guard lock(facts_mutex_);
-  unreadable_.insert(text);
+  unreadable_.insert({topic, text});
 }
 
-void TopicReaders::noteWriter(const dds::DiscoveredWriter& writer) {
+bool TopicReaders::isRead(const std::string& topic) const {
+  return rules_.selection.isRecorded(topic) || rules_.awaited.contains(topic);
+}
+
+/// One more writer of a foreign topic. With the facts' mutex held.
+bool TopicReaders::hasPlace() {
+  if (foreign_ < rules_.max_foreign_writers) {
+    ++foreign_;
+    return true;
+  }
+  const std::string text = "only the first " + std::to_string(rules_.max_foreign_writers) +
+                           " writers of topics that are none of Baton's are recorded, and there are more";
+  if (unreadable_.insert({"", text}).second) {
+    boost::asio::post(executor_, [this, text] { rules_.on_unreadable(text); });
+  }
+  return false;
+}
+
+bool TopicReaders::noteWriter(const dds::DiscoveredWriter& writer) {
   const std::optional<dds::Peer> peer = participant_.peer(dds::prefixOf(writer.guid));
+  const bool is_foreign = dds::isForeignTopic(writer.topic);
   const std::lock_guard lock(facts_mutex_);
+  if (!is_foreign || (rules_.selection.takes_foreign && found_.size() < kMaxFound)) found_.insert(writer.topic);
+  if (!isRead(writer.topic)) return false;
+  if (is_foreign && !notes_.contains(writer.guid) && !hasPlace()) return false;
   Note& note = notes_[writer.guid];
   if (note.found_ns == 0) note.found_ns = participant_.clock().now();
   note.metadata = {{"writer", dds::toString(writer.guid)},
@@ -53,11 +78,10 @@ void TopicReaders::noteWriter(const dds::DiscoveredWriter& writer) {
                    {"type", writer.type},
                    {"qos", qosYaml(writer)},
                    {"qos_policies", writer.qos_text}};
-  found_.insert(writer.topic);
+  return true;
 }
 
 void TopicReaders::writerFound(const dds::DiscoveredWriter& writer) {
-  if (!rules_.selection.isRecorded(writer.topic) && !rules_.awaited.contains(writer.topic)) return;
   const dds::EndpointOptions options{.topic = writer.topic,
                                      .type = writer.type,
                                      .profile = writer.transient_local ? dds::Profile::kEvent : dds::Profile::kLoop,
@@ -82,17 +106,17 @@ void TopicReaders::writerFound(const dds::DiscoveredWriter& writer) {
   try {
     topic->reader = std::make_unique<dds::RawReader>(
         participantFor(writer.topic, writer.type), options,
-        [this, index](const dds::RawSample& sample) {
-          if (dds::prefixOf(sample.writer) != participant_.self().prefix && isFor(index, sample.writer)) {
-            sink_(index, sample);
-          }
+        [this, index, is_foreign = dds::isForeignTopic(writer.topic)](const dds::RawSample& sample) {
+          if (dds::prefixOf(sample.writer) == participant_.self().prefix || !isFor(index, sample.writer)) return;
+          if (is_foreign && !isNoted(sample.writer)) return;
+          sink_(index, is_foreign, sample);
         },
         [this] {
           if (rules_.on_match) rules_.on_match();
         },
         rules_.filter_for(writer.topic));
   } catch (const Error& error) {
-    refuse("a writer cannot be recorded: " + std::string(error.what()));
+    refuse(writer.topic, "a writer cannot be recorded: " + std::string(error.what()));
     return rules_.on_unreadable(error.what());
   }
   topics_.push_back(std::move(topic));
@@ -113,6 +137,12 @@ bool TopicReaders::isFor(std::uint32_t topic, const dds::Guid& writer) {
   const std::lock_guard lock(routes_mutex_);
   const auto found = routes_.find(writer);
   return found == routes_.end() || found->second == topic;
+}
+
+/// DDS matches a reader also with writers that have no place.
+bool TopicReaders::isNoted(const dds::Guid& writer) const {
+  const std::lock_guard lock(facts_mutex_);
+  return notes_.contains(writer);
 }
 
 TopicReaders::Writer TopicReaders::of(std::uint32_t topic, const dds::Guid& writer) const {
@@ -166,7 +196,7 @@ std::vector<std::string> TopicReaders::unmatched() const {
   return rules_.selection.unmatched(found_);
 }
 
-std::vector<std::string> TopicReaders::unreadable() const {
+std::vector<TopicReaders::Unreadable> TopicReaders::unreadable() const {
   const std::lock_guard lock(facts_mutex_);
   return {unreadable_.begin(), unreadable_.end()};
 }

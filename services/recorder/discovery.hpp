@@ -8,6 +8,7 @@
 #include <boost/asio/io_context.hpp>
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -38,12 +39,14 @@ struct ReadingRules {
   /// Another participant like the first: one has room for one type under the name of a topic. Empty: there is none, and
   /// writers of a second type are unreadable.
   std::function<std::unique_ptr<dds::Participant>()> another{};
+  /// So many writers of foreign topics, those that are none of Baton's, are read; each costs a channel and memory.
+  std::size_t max_foreign_writers = std::numeric_limits<std::size_t>::max();
 };
 
 class TopicReaders {
  public:
-  /// On a DDS thread. @param topic  the place of the topic, for of().
-  using Sink = std::function<void(std::uint32_t topic, const dds::RawSample& sample)>;
+  /// On a DDS thread. @param topic  the place of the topic, for of().  @param is_foreign  it is none of Baton's.
+  using Sink = std::function<void(std::uint32_t topic, bool is_foreign, const dds::RawSample& sample)>;
 
   /// What the participant itself writes is not recorded: writing it would change it.
   TopicReaders(dds::Participant& participant, boost::asio::io_context& executor, ReadingRules rules, Sink sink);
@@ -55,8 +58,8 @@ class TopicReaders {
   void watch();
   /// No more readers from now on.
   void stopWatching();
-  /// A writer is not read, in a sentence; any thread.
-  void refuse(const std::string& text);
+  /// A writer of this topic is not read, in a sentence; any thread.
+  void refuse(const std::string& topic, const std::string& text);
 
   struct Writer {
     std::string topic;
@@ -71,10 +74,15 @@ class TopicReaders {
   /// The participants matched with the readers of a topic; any thread.
   [[nodiscard]] std::set<dds::GuidPrefix> matched(const std::string& topic) const;
   /// What has been left out so far, by name; patterns of the selection that nothing has matched so far; and writers
-  /// that could not be read, in a sentence each. Any thread.
+  /// that could not be read, with their topic and in a sentence each. Any thread.
   [[nodiscard]] std::vector<std::string> leftOut() const;
   [[nodiscard]] std::vector<std::string> unmatched() const;
-  [[nodiscard]] std::vector<std::string> unreadable() const;
+  struct Unreadable {
+    std::string topic;
+    std::string text;
+    auto operator<=>(const Unreadable&) const = default;
+  };
+  [[nodiscard]] std::vector<Unreadable> unreadable() const;
   /// Writers that are recorded and there, and have not been matched within `patience` of being found: nothing of theirs
   /// can come. In a sentence each; any thread.
   [[nodiscard]] std::vector<std::string> unmatchedWriters(std::chrono::nanoseconds patience) const;
@@ -93,10 +101,13 @@ class TopicReaders {
     mcap::StringMap metadata;
   };
 
-  void noteWriter(const dds::DiscoveredWriter& writer);
+  [[nodiscard]] bool isRead(const std::string& topic) const;
+  [[nodiscard]] bool noteWriter(const dds::DiscoveredWriter& writer);
+  [[nodiscard]] bool hasPlace();
   void writerFound(const dds::DiscoveredWriter& writer);
   [[nodiscard]] dds::Participant& participantFor(const std::string& topic, const std::string& type);
   [[nodiscard]] bool isFor(std::uint32_t topic, const dds::Guid& writer);
+  [[nodiscard]] bool isNoted(const dds::Guid& writer) const;
 
   dds::Participant& participant_;
   boost::asio::io_context& executor_;
@@ -112,7 +123,8 @@ class TopicReaders {
   mutable std::mutex facts_mutex_;
   std::map<dds::Guid, Note> notes_;  // made when it is found: who asks something leaves soon
   std::set<std::string> found_;      // topics, recorded or not
-  std::set<std::string> unreadable_;
+  std::size_t foreign_ = 0;          // of the notes, recorded writers of foreign topics
+  std::set<Unreadable> unreadable_;
 
   // A reader hears writers of a stronger QoS as well: of two on a topic, each takes its own.
   std::atomic<bool> has_rivals_{false};

@@ -16,7 +16,9 @@ Recorder::Recorder(Service& service)
     : service_(service),
       queue_(kQueueBytes, kWakeSamples, service.participant().clock()),
       topics_(service.participant(), service.executor(), rulesOfRun(service),
-              [this](std::uint32_t topic, const dds::RawSample& sample) { (void)queue_.push(topic, sample); }),
+              [this](std::uint32_t topic, bool is_foreign, const dds::RawSample& sample) {
+                (void)queue_.push(topic, sample, is_foreign ? SampleQueue::Share::kHalf : SampleQueue::Share::kWhole);
+              }),
       session_(service, queue_, topics_) {
   service.answersNoSteps();
   service.onEnd([this] { session_.runHasEnded(); });

@@ -49,9 +49,11 @@ std::vector<std::string> awaitedFrom(const dds::TopicFacts& topic, const Scenari
 }  // namespace
 
 ReadingRules rulesOfRun(Service& service) {
+  constexpr std::size_t kMaxForeignWriters = 1000;
   const Scenario& scenario = service.scenario();
   ReadingRules rules;
-  rules.selection = {scenario.recording.topics, scenario.recording.except};
+  rules.max_foreign_writers = kMaxForeignWriters;
+  rules.selection = {scenario.recording.topics, scenario.recording.except, scenario.recording.takes_foreign};
   for (const dds::TopicFacts& topic : dds::topics::kAll) {
     if (!awaitedFrom(topic, scenario).empty()) rules.awaited.insert(topic.name);
   }

@@ -5,14 +5,21 @@
 
 namespace baton {
 
-bool SampleQueue::push(std::uint32_t topic, const dds::RawSample& sample) {
+constexpr std::size_t kFewEntries = 1024;
+
+bool SampleQueue::push(std::uint32_t topic, const dds::RawSample& sample, Share share) {
   const std::int64_t now_ns = clock_.now();
   bool wake = false;
   {
     const std::lock_guard lock(mutex_);
     if (is_closed_) return true;  // too late to matter
-    is_full_ = is_full_ || pending_.payloads.size() + sample.payload.size() > max_bytes_;
-    if (is_full_) {
+    const bool is_half = share == Share::kHalf;
+    bool& is_full = is_half ? is_half_full_ : is_full_;
+    const std::size_t most = is_half ? max_bytes_ / 2 : max_bytes_;
+    // An entry takes room as well: of samples with few bytes or none there may be so many.
+    is_full = is_full || pending_.payloads.size() + sample.payload.size() > most ||
+              pending_.entries.size() >= std::max(most / sizeof(Entry), kFewEntries);
+    if (is_full || is_full_) {
       drop(topic, sample);
       return false;
     }
@@ -55,7 +62,7 @@ bool SampleQueue::take(Batch& batch, std::chrono::milliseconds timeout) {
   std::unique_lock lock(mutex_);
   wake_.wait_for(lock, timeout, [this] { return is_closed_ || pending_.entries.size() >= wake_entries_; });
   std::swap(batch, pending_);
-  is_full_ = false;
+  is_full_ = is_half_full_ = false;
   return !is_closed_ || !batch.entries.empty() || !batch.drops.empty();
 }
 

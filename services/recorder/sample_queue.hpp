@@ -48,10 +48,13 @@ class SampleQueue {
   SampleQueue(std::size_t max_bytes, std::size_t wake_entries, const dds::WallClock& clock = {})
       : max_bytes_(max_bytes), wake_entries_(wake_entries), clock_(clock) {}
 
-  /// Returns false when the queue is full and the sample is dropped, and with it all that follow until the next take():
-  /// what is missing of a writer then lies in one piece. Once closed, it takes no notice of samples. The log time is
-  /// stamped here, at one place, and never decreases.
-  bool push(std::uint32_t topic, const dds::RawSample& sample);
+  /// How much of the queue a sample may find room in: what has half of it cannot keep the rest from being written.
+  enum class Share : std::uint8_t { kWhole, kHalf };
+
+  /// Returns false when its share is full and the sample is dropped, and with it all of that share that follow until
+  /// the next take(): what is missing of a writer then lies in one piece. Once closed, it takes no notice of samples.
+  /// The log time is stamped here, at one place, and never decreases.
+  bool push(std::uint32_t topic, const dds::RawSample& sample, Share share = Share::kWhole);
 
   /// Waits for samples, at most `timeout`, and moves them to `batch` (emptied first). Returns false when the queue is
   /// closed and empty.
@@ -76,6 +79,7 @@ class SampleQueue {
   std::condition_variable wake_;
   Batch pending_;
   bool is_full_ = false;
+  bool is_half_full_ = false;
   std::int64_t last_log_time_ns_ = 0;
   bool is_closed_ = false;
 };

@@ -48,6 +48,7 @@ RecordingSession::RecordingSession(Service& service, SampleQueue& queue, const T
       ledger_(servicesBut(kRecorderName, service.scenario())),
       path_(service.options().out),
       room_(config_) {
+  ledger_.remarkForeignTopics();
   room_.measure(path_);
   if (control_.isRing()) {
     ring_ = std::make_unique<Ring>(config_.ring_steps, config_.ring_bytes);
@@ -91,7 +92,7 @@ void RecordingSession::takeBatch(const SampleQueue::Batch& batch) {
     // What is not in the account may be here twice.
     if (!(stream.is_booked ? book(ledger_, stream, entry, payload) : entry.has_data)) continue;
     if (stream.credit) credit_.came(*stream.credit, payload);
-    if (!stream.is_status) ++progress_;
+    if (!stream.is_status && !stream.is_foreign) ++progress_;
     // Also what found no room in the queue, which is booked behind the batch it was dropped from.
     const std::uint64_t lost_before = stream.booked(credit_.elapsedSteps());
     if (stream.is_recorded) keep(stream, entry, payload, lost_before);
@@ -327,14 +328,14 @@ void RecordingSession::publishStatus() {
   status.queued_bytes(depth.bytes);
   status.disk_left(room_.freeBytes());
   status.lost(ledger_.missing());
-  if (status.lost() > 0) addLosses(status);
+  addLosses(status);
   status.complete(control_.state() == msg::RECORDER_CLOSED && incomplete_.empty());
   status.path(path_);
   status.text(text_.substr(0, kMaxStatusText));
   status_out_.write(status);
 }
 
-/// The largest first.
+/// Those of the run's topics first, and of these the largest.
 void RecordingSession::addLosses(msg::RecorderStatus& status) const {
   for (const auto& [key, stream] : streams_) {
     if (stream.received->second.missing == 0 || stream.is_status) continue;
@@ -344,8 +345,11 @@ void RecordingSession::addLosses(msg::RecorderStatus& status) const {
     loss.lost(stream.received->second.missing);
     status.losses().push_back(loss);
   }
-  std::sort(status.losses().begin(), status.losses().end(),
-            [](const msg::WriterLoss& a, const msg::WriterLoss& b) { return a.lost() > b.lost(); });
+  std::sort(status.losses().begin(), status.losses().end(), [](const msg::WriterLoss& a, const msg::WriterLoss& b) {
+    const bool is_a_foreign = dds::isForeignTopic(a.topic().c_str());
+    const bool is_b_foreign = dds::isForeignTopic(b.topic().c_str());
+    return std::pair(is_b_foreign, a.lost()) > std::pair(is_a_foreign, b.lost());
+  });
   if (status.losses().size() > msg::MAX_LOSSES) status.losses().resize(msg::MAX_LOSSES);
 }
 

@@ -54,7 +54,7 @@ std::string RecordingSession::finish(const Ending& ending) {
 std::string RecordingSession::close(Recording& recording, std::uint64_t begun_at, const Ending& ending,
                                     const std::vector<Hole>& holes) {
   for (const std::string& topic : topics_.leftOut()) ledger_.leaveOut(topic);
-  for (const std::string& what : topics_.unreadable()) ledger_.cannotRecord(what);
+  for (const auto& [topic, text] : topics_.unreadable()) ledger_.cannotRecord(topic, text);
   for (const auto& [key, stream] : streams_) {
     stream.received->second.excused = stream.excusedIn(begun_at, recording.missing(stream));
   }
@@ -70,6 +70,7 @@ std::string RecordingSession::close(Recording& recording, std::uint64_t begun_at
   spdlog::info("closed path={} parts={} messages={} bytes={} {}", recording.path().string(), recording.part() + 1,
                recording.messages(), recording.bytes(), certificate.summary());
   for (const std::string& problem : certificate.problems()) spdlog::warn("incomplete: {}", problem);
+  for (const std::string& remark : ledger_.remarks()) spdlog::info("not of the run: {}", remark);
   for (const std::string& pattern : topics_.unmatched()) {
     spdlog::warn("recording: topics or except: expected a pattern that matches a topic, found {}", pattern);
   }

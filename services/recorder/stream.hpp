@@ -28,6 +28,7 @@ struct Stream {
   Role role = Role::kOther;
   std::optional<std::size_t> credit;  // its place, when the plant waits for its steps
   bool is_recorded = true;            // not left out on purpose
+  bool is_foreign = false;            // on a topic that is none of Baton's
   bool is_booked = true;              // so is what the account itself learns from
   bool is_status = false;
   bool is_manifest = false;          // what is sent at the end: kept in a pause as well

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "dds/topics.hpp"
+
 namespace baton {
 namespace {
 
@@ -15,6 +17,7 @@ bool isMatch(const std::string& pattern, const std::string& topic) {
 
 bool TopicSelection::isRecorded(const std::string& topic) const {
   const auto matches = [&](const std::string& pattern) { return isMatch(pattern, topic); };
+  if (!takes_foreign && dds::isForeignTopic(topic)) return false;
   return (topics.empty() || std::any_of(topics.begin(), topics.end(), matches)) &&
          std::none_of(except.begin(), except.end(), matches);
 }
@@ -22,7 +25,9 @@ bool TopicSelection::isRecorded(const std::string& topic) const {
 std::vector<std::string> TopicSelection::unmatched(const std::set<std::string>& found) const {
   std::vector<std::string> result;
   for (const std::string& pattern : topics) {
-    const auto matches = [&](const std::string& topic) { return isMatch(pattern, topic); };
+    const auto matches = [&](const std::string& topic) {
+      return isMatch(pattern, topic) && (takes_foreign || !dds::isForeignTopic(topic));
+    };
     if (std::none_of(found.begin(), found.end(), matches)) result.push_back(pattern);
   }
   return result;

@@ -134,6 +134,25 @@ TEST(SampleQueue, WhatFindsNoRoomIsToldByWriterInOnePiece) {
   EXPECT_TRUE(batch.drops.empty()) << "told once";
 }
 
+TEST(SampleQueue, WhatHasHalfOfItLeavesTheRestItsRoom) {
+  using enum SampleQueue::Share;
+  SampleQueue queue(100, 1);
+  const auto push = [&](std::uint64_t sequence, std::size_t size, SampleQueue::Share share) {
+    return queue.push(0, sampleOf(sequence, size).raw, share);
+  };
+  EXPECT_TRUE(push(1, 50, kHalf));
+  EXPECT_FALSE(push(2, 1, kHalf));
+  EXPECT_TRUE(push(3, 40, kWhole)) << "only the half is full";
+  EXPECT_FALSE(push(4, 11, kWhole));
+  SampleQueue::Batch batch;
+  ASSERT_TRUE(queue.take(batch, kNoWait));
+  ASSERT_EQ(batch.drops.size(), 2u);
+  EXPECT_TRUE(push(5, 60, kWhole));
+  EXPECT_FALSE(push(6, 1, kHalf)) << "what is not of its share takes its room as well";
+  ASSERT_TRUE(queue.take(batch, kNoWait));
+  EXPECT_TRUE(push(7, 50, kHalf)) << "taking makes room";
+}
+
 TEST(SampleQueue, LogTimesNeverDecreaseAcrossTopicsAndBatches) {
   SampleQueue queue(1 << 20, 1);
   SampleQueue::Batch batch;

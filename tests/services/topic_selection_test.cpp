@@ -28,6 +28,14 @@ TEST(TopicSelection, TakesAwayFromWhatIsAllowed) {
   EXPECT_FALSE(selection.isRecorded("sim_status"));
 }
 
+TEST(TopicSelection, LeavesOutForeignTopicsWhereTheyAreNotWanted) {
+  const TopicSelection own{.topics = {"plant_*", "rt/*"}, .except = {}, .takes_foreign = false};
+  EXPECT_TRUE(own.isRecorded("plant_state"));
+  EXPECT_FALSE(own.isRecorded("rt/turtle/pose"));
+  EXPECT_FALSE(own.isRecorded("plant_temperature")) << "none of Baton's, whatever it is called";
+  EXPECT_EQ(own.unmatched({"plant_state", "rt/turtle/pose"}), std::vector<std::string>{"rt/*"});
+}
+
 TEST(TopicSelection, APatternReachesOverSlashes) {
   EXPECT_FALSE((TopicSelection{{}, {"rt/*"}}.isRecorded("rt/turtle/pose")));
 }

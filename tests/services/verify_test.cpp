@@ -81,13 +81,22 @@ TEST_F(VerifyTest, WhatTheRecorderSawMissingIsMissing) {
   }
 }
 
+TEST_F(VerifyTest, WhatIsLostOfAForeignTopicIsANote) {
+  const Verification found = verifyWith({.stranger = "their_topic", .stranger_lost = 3});
+  EXPECT_EQ(found.verdict(), RecordingVerdict::kComplete) << all(found);
+  ASSERT_EQ(found.remarks.size(), 1U);
+  EXPECT_TRUE(mentions(found.remarks, "their_topic of ")) << found.remarks[0];
+  EXPECT_TRUE(mentions(found.remarks, "3 samples are missing")) << found.remarks[0];
+  EXPECT_TRUE(verifyWith({.stranger = "their_topic"}).remarks.empty());
+}
+
 TEST_F(VerifyTest, ACertificateThatSaysMoreThanTheBytesIsNotBelieved) {
   for (const RecordingPlan& plan :
        {RecordingPlan{.leave_out = 100, .is_seen = false}, RecordingPlan{.change = 100, .is_seen = false}}) {
     const Verification found = verifyWith(plan);
     EXPECT_EQ(found.verdict(), RecordingVerdict::kIncomplete);
     EXPECT_TRUE(mentions(found.missing, "the certificate says complete, the bytes do not")) << all(found);
-    EXPECT_TRUE(mentions(found.missing, "the certificate says otherwise of state")) << all(found);
+    EXPECT_TRUE(mentions(found.missing, "the certificate says otherwise of plant_state")) << all(found);
   }
 }
 

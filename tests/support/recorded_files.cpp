@@ -128,12 +128,13 @@ std::vector<std::string> writeRecording(const std::filesystem::path& folder, con
   const Scenario scenario = loadScenario((dataFolder() / "scenarios/link1.yaml").string());
   const std::vector<std::string> services = servicesBut(kRecorderName, scenario);
   Ledger ledger(services);
+  ledger.remarkForeignTopics();
   Files files(folder, name, plan);
   std::vector<Stream> streams;
   for (const std::string& service : services) {
     dds::Guid guid;
     guid.bytes.fill(static_cast<std::uint8_t>(streams.size() + 1 + 16 * name.size()));  // another run has other writers
-    streams.push_back({.service = service, .key = {"state", guid}});
+    streams.push_back({.service = service, .key = {dds::topics::kPlantState.name, guid}});
   }
   for (std::uint64_t i = 0; i < plan.samples; ++i) {
     if (i % (plan.samples / plan.parts) == 0) files.begin(scenario);
@@ -152,8 +153,10 @@ std::vector<std::string> writeRecording(const std::filesystem::path& folder, con
   if (!plan.stranger.empty()) {
     const Ledger::Key key{plan.stranger, dds::Guid{}};
     const std::vector<std::byte> payload(16);
-    ledger.book(key, 1, payload);
-    files.write(key, 1, payload, {{"service", plan.claim}});
+    for (const std::uint64_t sequence : {std::uint64_t{1}, 2 + plan.stranger_lost}) {
+      ledger.book(key, sequence, payload);
+      files.write(key, sequence, payload, {{"service", plan.claim}});
+    }
   }
   for (const Stream& stream : streams) {
     if (stream.service == plan.silent) continue;

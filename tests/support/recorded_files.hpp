@@ -23,6 +23,7 @@ struct RecordingPlan {
   std::string silent{};       // this service sends no manifest
   std::string stranger{};     // on this topic a process has written that calls itself by the next name
   std::string claim{};
+  std::uint64_t stranger_lost = 0;  // of its samples, between the two that are there
 };
 
 /// Writes the recording of a run with a plant, a trajectory and a controller, each with one stream, into `name.mcap`,

@@ -108,10 +108,13 @@ class Booking {
     from_before_ = part.repeated;
     reader.forEachMessage({.order = mcap::MessageFilter::Order::kFile},
                           [this](const mcap::MessageView& message) { book(message); });
-    if (repeated_ > 0) {
-      result_.missing.push_back(fmt::format("{}: {} messages come twice, or behind later ones of their writer",
-                                            part.file, std::exchange(repeated_, 0)));
-    }
+    const auto tell = [&](std::uint64_t& repeated, std::vector<std::string>& findings) {
+      if (repeated == 0) return;
+      findings.push_back(fmt::format("{}: {} messages come twice, or behind later ones of their writer", part.file,
+                                     std::exchange(repeated, 0)));
+    };
+    tell(repeated_, result_.missing);
+    tell(repeated_foreign_, result_.remarks);
     if (crc.get() == false && part.damage.empty() && part.unreadable.empty()) {
       result_.damage.push_back(part.file + ": the CRC of its data section is wrong: bytes between the chunks changed");
     }
@@ -139,7 +142,8 @@ class Booking {
     const std::uint64_t last = so_far.count == 0 ? message.sequence : so_far.last_sequence;
     const auto growth = static_cast<std::int32_t>(message.sequence - static_cast<std::uint32_t>(last));
     const std::uint64_t sequence = last + static_cast<std::uint64_t>(std::int64_t{growth});
-    if (!result_.ledger.book(*account.stream, sequence, message.data)) ++repeated_;
+    if (result_.ledger.book(*account.stream, sequence, message.data)) return;
+    ++(result_.ledger.isRemarked(message.channel->topic) ? repeated_foreign_ : repeated_);
   }
 
   Ledger::Stream* streamOf(const mcap::Channel& channel) {
@@ -151,6 +155,7 @@ class Booking {
   const std::function<void(double)>& progress_;
   std::uint64_t expected_ = 0;
   std::uint64_t repeated_ = 0;
+  std::uint64_t repeated_foreign_ = 0;
   mcap::Repeated from_before_;     // of the present part
   std::vector<Account> accounts_;  // [channel id], of the present part
 };
@@ -211,7 +216,6 @@ void judge(const std::vector<Part>& parts, bool are_all, const std::optional<std
     result.missing.emplace_back("it was not recorded by Baton: nobody says what was sent");
     return;
   }
-  result.is_traffic = metadataValue(*parts[0].reader, "baton.run", "kind") == "traffic";
   if (!are_all) return;  // what was sent, and what certified, is more than these files have
   try {
     if (!result.is_traffic) {
@@ -224,6 +228,7 @@ void judge(const std::vector<Part>& parts, bool are_all, const std::optional<std
     add(result.missing, result.is_traffic ? result.ledger.problemsSoFar() : result.ledger.problems());
     if (!certificate) return result.missing.emplace_back("it has no certificate"), void();
     add(result.missing, result.ledger.disagreements(*certificate));
+    if (!result.is_traffic) add(result.remarks, result.ledger.certifiedRemarks(*certificate));
     const std::string verdict = metadataValue(*parts.back().reader, "baton.certificate", "complete");
     result.summary = metadataValue(*parts.back().reader, "baton.certificate", "summary");
     if (verdict != "true" && result.missing.empty()) result.missing.push_back("its certificate says " + result.summary);
@@ -248,6 +253,10 @@ Verification verifyRecording(const std::vector<std::string>& files, const std::f
   const bool are_all = result.missing.empty();
   const auto certificate = attached(parts, "certificate.json");
   if (certificate) result.ledger.beginAt(*certificate);
+  if (!parts[0].run.empty()) {
+    result.is_traffic = metadataValue(*parts[0].reader, "baton.run", "kind") == "traffic";
+    if (!result.is_traffic) result.ledger.remarkForeignTopics();
+  }
   Booking booking(result, parts, progress);
   for (const Part& part : parts) {
     result.files.push_back(part.file);

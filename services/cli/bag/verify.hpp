@@ -18,6 +18,7 @@ struct Verification {
   std::vector<std::string> damage;   // bytes that cannot be read, or are not those that were written
   std::vector<std::string> cuts;     // where a file ends in the middle
   std::vector<std::string> missing;  // messages that are missing, and what keeps completeness from being proven
+  std::vector<std::string> remarks;  // on topics that are none of Baton's, which are not what the verdict is on
   std::string summary;               // the certificate's verdict, in its words
   bool is_traffic = false;           // recorded without a run: no manifest counts
   Ledger ledger{{}};                 // every stream as the bytes give it, beside what its writer says of it

@@ -46,6 +46,7 @@ void printText(const Verification& found) {
   if (!found.damage.empty() || !found.cuts.empty()) {
     sayf("            `bag recover` makes a recording of all that can be read, with an index that is right\n");
   }
+  for (const std::string& text : found.remarks) sayf("note        {}\n", escaped(text));
   for (const std::string& text : found.log_times.findings()) sayf("note        {}\n", text);
   sayf("messages    {} in {} streams\n", found.messages, found.ledger.streams().size());
   sayf("size        {:.2f} MB\n", static_cast<double>(found.bytes) * 1e-6);
@@ -57,6 +58,7 @@ nlohmann::ordered_json toJson(const Verification& found) {
           {"damage", found.damage},
           {"cuts", found.cuts},
           {"missing", found.missing},
+          {"remarks", found.remarks},
           {"clock", found.log_times.findings()},
           {"certificate", found.summary},
           {"traffic", found.is_traffic},
@@ -90,7 +92,9 @@ void addBagVerify(CLI::App& bag, ExitCode& exit_code) {
   CLI::App* command = bag.add_subcommand("verify", "prove again, from its bytes, that a recording is complete");
   command->footer(
       "Reads everything and checks every checksum; counts and hashes each writer's messages again, and compares them\n"
-      "with what the services say they sent and with the certificate in the file.\n"
+      "with what the services say they sent and with the certificate in the file. What is lost of topics that are "
+      "none\n"
+      "of Baton's is a note (`remarks`): the verdict is on the run.\n"
       "Exit codes: 0 proven complete; 1 incomplete, cut or without a certificate; 2 damaged or not a recording;\n"
       "3 cannot be opened.");
   addRecording(*command, request->recording, "files",

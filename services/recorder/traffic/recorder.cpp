@@ -35,7 +35,7 @@ TrafficRecorder::TrafficRecorder(TrafficOptions options)
       participant_(participantOptions()),
       queue_(kMostQueued, kWakeAfter, participant_.clock()),
       topics_(participant_, executor_, rules(),
-              [this](std::uint32_t topic, const dds::RawSample& sample) { (void)queue_.push(topic, sample); }),
+              [this](std::uint32_t topic, bool, const dds::RawSample& sample) { (void)queue_.push(topic, sample); }),
       session_(options_, claimRecording("FILE", options_.out, options_.recording.isSplit(), options_.overwrite), queue_,
                topics_) {
   for (const int number : endingSignals()) signals_.add(number);
@@ -71,8 +71,9 @@ ReadingRules TrafficRecorder::rules() {
     if (!isInPartitions(writer.partitions, read)) return false;
     if (isPlain(writer.topic) && isPlain(writer.type)) return true;
     topics_.refuse(
+        writer.topic,
         "a writer of " + dds::toString(writer.guid) +
-        " is not recorded: control characters in the name of its topic or type, or bytes that are not UTF-8");
+            " is not recorded: control characters in the name of its topic or type, or bytes that are not UTF-8");
     return false;
   };
   rules.on_unreadable = [](const std::string& text) { spdlog::error("{}", text); };

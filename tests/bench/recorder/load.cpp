@@ -76,7 +76,7 @@ Recorded recordUnder(const Load& load, const std::filesystem::path& file, Progra
   programs.start("baton",
                  {"run", programs.write("load.yaml", scenarioText(false, 0, kEndless_steps, kCrawl)), "--out",
                   file.string(), "--overwrite", "--cell", cell, "--domain", domain, "--json"},
-                 static_cast<int>(ExitCode::kFailed));  // which is how a run ends that lost samples
+                 static_cast<int>(ExitCode::kFailed));  // which is how a run ends whose own samples were lost
   waitForRun(cell, programs);
   startWriters(load, cell, programs);
   programs.waitUntil([&] { return !programs.anyRunning(kWriter); });

@@ -28,7 +28,7 @@ RecordingConfig parse(const std::string& recording) {
 
 TEST(ScenarioRecording, WithoutAWordAllIsRecordedInOneFile) {
   const RecordingConfig config = parse("  enabled: true\n");
-  EXPECT_TRUE(config.topics.empty() && config.except.empty());
+  EXPECT_TRUE(config.topics.empty() && config.except.empty() && config.takes_foreign);
   EXPECT_EQ(config.split_bytes + config.split_steps + config.ring_steps + config.max_bytes, 0u);
   EXPECT_EQ(config.min_free_bytes, 10'000'000u) << "for the run's other files";
   EXPECT_FALSE(config.starts_stopped);
@@ -39,7 +39,8 @@ TEST(ScenarioRecording, GivesEachFieldItsPlace) {
   const RecordingConfig config = parse(
       "  topics: [plant_*, contact]\n  except: ['*_again']\n  compression: zstd\n  level: 9\n  chunk_kB: 64\n"
       "  split_MB: 2.5\n  split_s: 10\n  max_MB: 100\n  when_full: drop_oldest\n  min_free_MB: 500\n"
-      "  start: on_request\n");
+      "  start: on_request\n  foreign: false\n");
+  EXPECT_FALSE(config.takes_foreign);
   EXPECT_EQ(config.topics, (std::vector<std::string>{"plant_*", "contact"}));
   EXPECT_EQ(config.except, std::vector<std::string>{"*_again"});
   EXPECT_EQ(config.level, 9);
