@@ -10,6 +10,9 @@
 namespace baton {
 namespace {
 
+// Made before main(): a local one is registered for its end at its first use, within a step, which may allocate.
+const std::string kNobody;
+
 const Scenario& checked(const Scenario& scenario) {
   const auto refuse = [&](const std::string& expected, const std::string& found) {
     throw UsageError(scenario.file + ": in one process expected " + expected + ", found " + found +
@@ -59,7 +62,6 @@ MonolithicRun::MonolithicRun(const Scenario& scenario)
 }
 
 const std::string& MonolithicRun::nameOf(int member) const {
-  static const std::string kNobody;
   return member == kBrake ? kNobody : arbiter_.members()[static_cast<std::size_t>(member)].name;
 }
 

@@ -5,6 +5,9 @@
 namespace baton {
 namespace {
 
+// Made before main(): a local one is registered for its end at its first use, within a step, which may allocate.
+const std::string kNobody;
+
 StepMasterConfig masterConfig(const Scenario& scenario, std::uint64_t first_step) {
   const bool has_credit = scenario.recording.enabled && scenario.mode == SimMode::kLockstep;
   return {.first_step = first_step,
@@ -119,7 +122,6 @@ bool Plant::speaksFor(int member, const dds::RawSample& sample) const {
 }
 
 const std::string& Plant::nameOf(int member) const {
-  static const std::string kNobody;
   return member == kBrake ? kNobody : arbiter_.members()[static_cast<std::size_t>(member)].name;
 }
 
