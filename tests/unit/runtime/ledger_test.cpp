@@ -1,91 +1,14 @@
 /// The recording's completeness certificate: what came held against what was sent.
-#include "runtime/ledger.hpp"
-#include "runtime/service_options.hpp"
-
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "dds/codec.hpp"
-#include "dds/hash.hpp"
 #include "dds/topics.hpp"
+#include "ledger_bookings.hpp"
+#include "runtime/service_options.hpp"
 
-namespace baton {
+namespace baton::test {
 namespace {
-
-using Json = nlohmann::json;
-
-dds::Guid guidOf(std::uint8_t id) {
-  dds::Guid guid;
-  guid.bytes.fill(id);
-  return guid;
-}
-
-std::vector<std::byte> payloadOf(std::uint64_t number) {
-  const auto bytes = std::as_bytes(std::span(&number, 1));
-  return {bytes.begin(), bytes.end()};
-}
-
-/// One writer of one topic, and its own account of what it sent.
-struct Sender {
-  std::string topic;
-  dds::Guid guid;
-  std::uint64_t count = 0;
-  std::uint64_t hash = 0;
-
-  std::vector<std::byte> send() {
-    std::vector<std::byte> payload = payloadOf(++count);
-    hash = dds::chainHash(hash, payload);
-    return payload;
-  }
-  [[nodiscard]] Ledger::Key key() const { return {topic, guid}; }
-};
-
-msg::ServiceManifest manifestOf(const std::string& service, const std::vector<const Sender*>& senders) {
-  msg::ServiceManifest manifest;
-  manifest.name(service);
-  for (const Sender* sender : senders) {
-    msg::StreamManifest stream;
-    stream.topic(sender->topic);
-    stream.writer(sender->guid.bytes);
-    stream.first_sequence(sender->count > 0 ? 1 : 0);
-    stream.last_sequence(sender->count);
-    stream.count(sender->count);
-    stream.stream_hash(sender->hash);
-    manifest.streams().push_back(stream);
-  }
-  return manifest;
-}
-
-bool mentions(const std::vector<std::string>& sentences, const std::string& words) {
-  return std::any_of(sentences.begin(), sentences.end(),
-                     [&](const std::string& s) { return s.find(words) != std::string::npos; });
-}
-
-class LedgerTest : public testing::Test {
- protected:
-  /// Sends `count` samples and books those that `arrives` lets through.
-  template <class Arrives>
-  void transmit(Sender& sender, std::uint64_t count, Arrives arrives) {
-    for (std::uint64_t i = 0; i < count; ++i) {
-      const std::vector<std::byte> payload = sender.send();
-      if (!arrives(sender.count)) continue;
-      EXPECT_TRUE(ledger_.book(sender.key(), sender.count, payload)) << sender.count;
-    }
-  }
-  void transmit(Sender& sender, std::uint64_t count) {
-    transmit(sender, count, [](std::uint64_t) { return true; });
-  }
-  [[nodiscard]] Json certificate() const { return Json::parse(ledger_.certificate()); }
-
-  Sender state_{"plant_state", guidOf(1)};
-  Sender status_{"sim_status", guidOf(2)};
-  Sender contact_{"contact", guidOf(3)};
-  Ledger ledger_{{"plant", "environment"}};
-};
 
 TEST_F(LedgerTest, ARunThatArrivedWholeIsComplete) {
   transmit(state_, 100);
@@ -490,46 +413,6 @@ TEST_F(LedgerTest, WhatCannotBeRecordedIsAProblem) {
   EXPECT_TRUE(mentions(ledger_.problemsSoFar(), "a writer of another type"));
 }
 
-TEST_F(LedgerTest, WhatIsLostOnForeignTopicsIsRemarkedInTheAccountOfARun) {
-  Sender foreign{"their_topic", guidOf(9)};
-  ledger_.addManifest(manifestOf("plant", {}));
-  ledger_.addManifest(manifestOf("environment", {}));
-  transmit(foreign, 10, [](std::uint64_t sequence) { return sequence != 5; });
-  ledger_.dropped(ledger_.streamOf(foreign.key()), 11, 13);
-  ledger_.cannotRecord("their_topic", "a writer of another type");
-  EXPECT_EQ(ledger_.problems().size(), 3u) << "of traffic without a run, nothing is more than anything else";
-  EXPECT_TRUE(ledger_.remarks().empty());
-  ledger_.remarkForeignTopics();
-  EXPECT_TRUE(ledger_.isComplete());
-  EXPECT_TRUE(ledger_.problemsSoFar().empty());
-  EXPECT_EQ(ledger_.missing(), 0u);
-  ASSERT_EQ(ledger_.remarks().size(), 2u);
-  EXPECT_TRUE(mentions(ledger_.remarks(), "a writer of another type"));
-  EXPECT_TRUE(mentions(ledger_.remarks(), "their_topic of " + dds::toString(foreign.guid) + ": 4 samples"));
-  transmit(contact_, 3, [](std::uint64_t sequence) { return sequence != 2; });
-  EXPECT_TRUE(mentions(ledger_.problems(), "contact of ")) << "the run's own are judged as before";
-  EXPECT_EQ(ledger_.remarks().size(), 2u);
-}
-
-TEST_F(LedgerTest, ACertificateThatSaysOtherwiseOfAForeignTopicIsRemarked) {
-  Sender foreign{"their_topic", guidOf(9)};
-  transmit(foreign, 3);
-  transmit(contact_, 3);
-  ledger_.remarkForeignTopics();
-  Json other = certificate();
-  other["complete"] = false;
-  other["remarks"] = {"half of it is elsewhere"};
-  for (Json& row : other["streams"]) row["count"] = 2;
-  const std::vector<std::string> own = ledger_.disagreements(other.dump());
-  ASSERT_EQ(own.size(), 1u);
-  EXPECT_TRUE(mentions(own, "contact of writer"));
-  const std::vector<std::string> remarks = ledger_.certifiedRemarks(other.dump());
-  ASSERT_EQ(remarks.size(), 2u);
-  EXPECT_EQ(remarks[0], "half of it is elsewhere");
-  EXPECT_TRUE(mentions(remarks, "their_topic of writer"));
-  EXPECT_TRUE(mentions(ledger_.certifiedRemarks("no JSON"), "cannot be read"));
-}
-
 TEST_F(LedgerTest, TheCertificateIsWrittenWhateverBytesAForeignNameHas) {
   Sender foreign{"caf\xE9\x01\"", guidOf(9)};
   transmit(foreign, 1);
@@ -537,4 +420,4 @@ TEST_F(LedgerTest, TheCertificateIsWrittenWhateverBytesAForeignNameHas) {
 }
 
 }  // namespace
-}  // namespace baton
+}  // namespace baton::test
