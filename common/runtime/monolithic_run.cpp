@@ -10,9 +10,6 @@
 namespace baton {
 namespace {
 
-// Made before main(): a local one is registered for its end at its first use, within a step, which may allocate.
-const std::string kNobody;
-
 const Scenario& checked(const Scenario& scenario) {
   const auto refuse = [&](const std::string& expected, const std::string& found) {
     throw UsageError(scenario.file + ": in one process expected " + expected + ", found " + found +
@@ -61,10 +58,6 @@ MonolithicRun::MonolithicRun(const Scenario& scenario)
   open();
 }
 
-const std::string& MonolithicRun::nameOf(int member) const {
-  return member == kBrake ? kNobody : arbiter_.members()[static_cast<std::size_t>(member)].name;
-}
-
 /// Who holds the baton at the step that has just opened.
 void MonolithicRun::open() {
   const int before = arbiter_.holder();
@@ -72,8 +65,8 @@ void MonolithicRun::open() {
   while (const std::optional<ArbiterAction> action = arbiter_.takeAction()) {
     msg::SwapOutcome& outcome = failovers_.emplace_back();
     outcome.done(true);
-    outcome.outgoing(nameOf(before));
-    outcome.incoming(nameOf(holder));
+    outcome.outgoing(arbiter_.nameOf(before));
+    outcome.incoming(arbiter_.nameOf(holder));
     outcome.decided_at_step(action->plan.decided_at_step);
     outcome.at_step(action->plan.at_step);
     outcome.blend_steps(action->plan.blend_steps);
@@ -88,7 +81,7 @@ bool MonolithicRun::step() {
   const StepStamp stamp = stampOf(step_, scenario_.step_ns);
   const int holder = arbiter_.holder();
 
-  toMessage(stamp, arm_.state(), nameOf(holder), chain_hash_, state_message_);
+  toMessage(stamp, arm_.state(), arbiter_.nameOf(holder), chain_hash_, state_message_);
   // So says the plant, of which every byte is the same here.
   state_message_.checkpoint(scenario_.hasCheckpointAt(step_) && arbiter_.isQuiet(step_));
   reference_answer_(step_, reference_message_);
@@ -138,7 +131,7 @@ std::uint64_t MonolithicRun::command(int holder, const StepStamp& stamp, const s
   input_.contact = uses_force ? contact_ : Contact{};
   const LawStatus status = law.compute(step_, {.holds = true}, input_, effort_);
   const bool has_effort = status == LawStatus::kOk;
-  toMessage(stamp, nameOf(holder), has_effort ? effort_ : JointVector(),
+  toMessage(stamp, arbiter_.nameOf(holder), has_effort ? effort_ : JointVector(),
             dds::inputsHash(std::span(inputs).first(uses_force ? 3 : 2)), command_message_);
   const ReasonText objection = objectionTo(command_message_, scenario_, has_effort ? "" : toString(status), effort_);
   if (objection.front() != '\0') {

@@ -56,7 +56,6 @@ class MonolithicRun {
 
  private:
   bool fail(const std::string& reason);
-  [[nodiscard]] const std::string& nameOf(int member) const;
   void open();
   [[nodiscard]] std::uint64_t command(int holder, const StepStamp& stamp, const std::array<std::uint64_t, 3>& inputs);
   void takeOver();

@@ -8,6 +8,9 @@ namespace baton {
 namespace {
 using Kind = ArbiterAction::Kind;
 using Step = unsigned long long;  // what %llu prints
+
+// Made before main(): a local one is registered for its end at its first use, within a step, which may allocate.
+const std::string kNobody;
 }  // namespace
 
 BatonArbiter::BatonArbiter(const ArbiterConfig& config)
@@ -16,6 +19,10 @@ BatonArbiter::BatonArbiter(const ArbiterConfig& config)
       holder_(config.holder),
       failed_(config.members.size(), 0),
       failed_at_(config.members.size(), 0) {}
+
+const std::string& BatonArbiter::nameOf(int member) const noexcept {
+  return member == kBrake ? kNobody : config_.members[static_cast<std::size_t>(member)].name;
+}
 
 void BatonArbiter::act(Kind kind, const HandoverPlan& plan, const char* format, ...) noexcept {
   if (queue_size_ == kQueue) return;  // taken after every request and every step, which make three at most

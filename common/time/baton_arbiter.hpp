@@ -14,6 +14,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/state_archive.hpp"
@@ -107,6 +108,8 @@ class BatonArbiter {
   /// Whether the holder changed at this step, by handover or failover.
   [[nodiscard]] bool changedAt(std::uint64_t step) const noexcept { return changed_at_ && *changed_at_ == step; }
   [[nodiscard]] const std::vector<ArbiterMember>& members() const noexcept { return config_.members; }
+  /// Empty for kBrake.
+  [[nodiscard]] const std::string& nameOf(int member) const noexcept;
   [[nodiscard]] double maxEffortStep() const noexcept { return config_.max_effort_step; }
   /// The handover under way, nullptr when there is none.
   [[nodiscard]] const HandoverPlan* planUnderWay() const noexcept { return phase_ == Phase::kIdle ? nullptr : &plan_; }

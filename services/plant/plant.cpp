@@ -5,9 +5,6 @@
 namespace baton {
 namespace {
 
-// Made before main(): a local one is registered for its end at its first use, within a step, which may allocate.
-const std::string kNobody;
-
 StepMasterConfig masterConfig(const Scenario& scenario, std::uint64_t first_step) {
   const bool has_credit = scenario.recording.enabled && scenario.mode == SimMode::kLockstep;
   return {.first_step = first_step,
@@ -113,16 +110,12 @@ int Plant::memberCalled(std::string_view name) const {
 }
 
 std::string Plant::holderText() const {
-  const std::string& name = nameOf(arbiter_.holder());
+  const std::string& name = arbiter_.nameOf(arbiter_.holder());
   return name.empty() ? "the brake" : name;
 }
 
 bool Plant::speaksFor(int member, const dds::RawSample& sample) const {
   return member != kBrake && dds::prefixOf(sample.writer) == members_[static_cast<std::size_t>(member)].speaker.prefix;
-}
-
-const std::string& Plant::nameOf(int member) const {
-  return member == kBrake ? kNobody : arbiter_.members()[static_cast<std::size_t>(member)].name;
 }
 
 void Plant::startWhenAllAreReady() {
@@ -155,7 +148,7 @@ void Plant::openStep() {
   keeps_torque_ = false;
   hashes_ = {};
   master_.needOutgoing(arbiter_.outgoingAt(step) != kBrake);
-  toMessage(service_.stampOf(step), arm_.state(), nameOf(arbiter_.holder()), chain_hash_, state_message_);
+  toMessage(service_.stampOf(step), arm_.state(), arbiter_.nameOf(arbiter_.holder()), chain_hash_, state_message_);
   const bool has_checkpoint = scenario_.hasCheckpointAt(step) && arbiter_.isQuiet(step) && !completed_;
   if (has_checkpoint) checkpoints_.save(step, *this);
   state_message_.checkpoint(has_checkpoint);
@@ -247,7 +240,7 @@ void Plant::tick() {
     }
     if (silent_in_a_row_ > scenario_.max_missed_steps) {
       const int silent = arbiter_.holder();
-      service_.event(msg::SEVERITY_ERROR, "missed", nameOf(silent) + " was silent for too many steps");
+      service_.event(msg::SEVERITY_ERROR, "missed", arbiter_.nameOf(silent) + " was silent for too many steps");
       Member& one = members_[static_cast<std::size_t>(silent)];
       one.is_lost = true;
       one.is_new = false;
@@ -373,7 +366,7 @@ void Plant::watchLateness() {
     if (scenario_.late_policy == LatePolicy::kAbort || member == kBrake) {
       return abort("the step waits for " + who + ", too long");
     }
-    service_.event(msg::SEVERITY_ERROR, "late", nameOf(member) + " is silent: it is taken for failed");
+    service_.event(msg::SEVERITY_ERROR, "late", arbiter_.nameOf(member) + " is silent: it is taken for failed");
     memberLost(member, "it was silent for too long");
     return proceed();
   }

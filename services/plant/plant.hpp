@@ -115,7 +115,6 @@ class Plant {
   [[nodiscard]] std::string namesWaitedFor() const;
   [[nodiscard]] int memberCalled(std::string_view name) const;
   [[nodiscard]] bool speaksFor(int member, const dds::RawSample& sample) const;
-  [[nodiscard]] const std::string& nameOf(int member) const;
   [[nodiscard]] std::string holderText() const;
   [[nodiscard]] bool isRealtime() const { return scenario_.mode == SimMode::kRealtime; }
   [[nodiscard]] static std::int64_t steadyNow();

@@ -183,7 +183,7 @@ void Plant::publishSwapActions() {
         }
         publishRefusal(plan, action->reason.data());
         service_.event(msg::SEVERITY_WARNING, "swap_refused",
-                       (plan.incoming == kBrake ? "" : nameOf(plan.incoming) + ": ") + action->reason.data());
+                       (plan.incoming == kBrake ? "" : arbiter_.nameOf(plan.incoming) + ": ") + action->reason.data());
         break;
       case ArbiterAction::Kind::kDone:
         timing_.handedOver(plan.plan_id, steadyNow());
@@ -191,8 +191,8 @@ void Plant::publishSwapActions() {
         completed_ = plan;
         completed_reason_ = action->reason;
         service_.event(plan.plan_id == 0 ? msg::SEVERITY_WARNING : msg::SEVERITY_INFO, "swap",
-                       nameOf(plan.incoming).empty() ? "the brake holds; " + std::string(action->reason.data())
-                                                     : nameOf(plan.incoming) + " holds the baton");
+                       arbiter_.nameOf(plan.incoming).empty() ? "the brake holds; " + std::string(action->reason.data())
+                                                              : arbiter_.nameOf(plan.incoming) + " holds the baton");
         break;
     }
   }
@@ -215,8 +215,8 @@ void Plant::publishPlan(const HandoverPlan& plan, std::uint64_t id, msg::SwapPha
   msg::SwapPlan message;
   message.plan_id(id);
   message.phase(phase);
-  message.outgoing(nameOf(plan.outgoing));
-  message.incoming(nameOf(plan.incoming));
+  message.outgoing(arbiter_.nameOf(plan.outgoing));
+  message.incoming(arbiter_.nameOf(plan.incoming));
   message.forecast_step(plan.forecast_step);
   message.at_step(plan.at_step);
   message.blend_steps(plan.blend_steps);
@@ -230,8 +230,8 @@ msg::SwapOutcome Plant::outcomeOf(const HandoverPlan& plan, const char* reason) 
   outcome.take(take_);
   outcome.plan_id(plan.plan_id);
   outcome.hard(plan.hard);
-  outcome.outgoing(nameOf(plan.outgoing));
-  outcome.incoming(nameOf(plan.incoming));
+  outcome.outgoing(arbiter_.nameOf(plan.outgoing));
+  outcome.incoming(arbiter_.nameOf(plan.incoming));
   outcome.decided_at_step(plan.decided_at_step);
   outcome.forecast_step(plan.forecast_step);
   outcome.at_step(plan.at_step);
@@ -266,17 +266,17 @@ void Plant::publishDryRun(const DryRun& dry_run) {
 
 void Plant::publishBaton() {
   msg::BatonStatus status;
-  status.holder(nameOf(arbiter_.holder()));
+  status.holder(arbiter_.nameOf(arbiter_.holder()));
   if (const HandoverPlan* plan = arbiter_.planUnderWay()) {
     status.plan_id(plan->plan_id);
     status.request_id(plan->request_id);
-    status.incoming(nameOf(plan->incoming));
+    status.incoming(arbiter_.nameOf(plan->incoming));
     status.at_step(plan->at_step);
   }
   for (int member = 0; member < static_cast<int>(arbiter_.members().size()); ++member) {
     const Refusal& refusal = members_[static_cast<std::size_t>(member)].refusal;
     msg::BatonMember& one = status.members().emplace_back();
-    one.name(nameOf(member));
+    one.name(arbiter_.nameOf(member));
     one.failed(arbiter_.hasFailed(member));
     one.refused_at_step(refusal.step);
     one.refusal(refusal.reason.data());

@@ -9,7 +9,7 @@ void Plant::memberLost(int member, const char* reason) {
   one.is_lost = true;
   one.is_new = false;
   takeForFailed(member, reason);
-  if (reset_) resetAcknowledged(nameOf(member));
+  if (reset_) resetAcknowledged(arbiter_.nameOf(member));
 }
 
 void Plant::memberFound(int member) {
@@ -56,7 +56,7 @@ void Plant::letReturn(int member) {
   msg::Decision decision = decisionOf(msg::DECISION_RETURNED, member);
   decision.restarted(one.is_new);
   decision_out_.write(decision);
-  service_.event(msg::SEVERITY_INFO, "returned", nameOf(member) + " answers again and stands by");
+  service_.event(msg::SEVERITY_INFO, "returned", arbiter_.nameOf(member) + " answers again and stands by");
   publishBaton();
 }
 
@@ -129,7 +129,7 @@ msg::Decision Plant::decisionOf(msg::DecisionCause cause, int member) const {
   decision.step(master_.step());
   decision.take(take_);
   decision.cause(cause);
-  decision.controller(nameOf(member));
+  decision.controller(arbiter_.nameOf(member));
   decision.at_step(master_.step());
   return decision;
 }

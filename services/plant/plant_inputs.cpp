@@ -24,7 +24,7 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
     ReasonText wrong{};
     write(wrong, "it commanded step %llu while step %llu was open", static_cast<unsigned long long>(message.step()),
           static_cast<unsigned long long>(master_.step()));
-    service_.event(msg::SEVERITY_ERROR, "bad_command", nameOf(member) + ": " + wrong.data());
+    service_.event(msg::SEVERITY_ERROR, "bad_command", arbiter_.nameOf(member) + ": " + wrong.data());
     memberLost(member, wrong.data());
     return proceed();
   }
@@ -40,7 +40,7 @@ void Plant::onCommand(const msg::JointCommand& message, const dds::RawSample& sa
   if (!is_usable) {
     // It never reaches the integrator: the joints keep their torque for this step, and the next one is somebody else's.
     effort = arm_.holdingEffort(message.step());
-    service_.event(msg::SEVERITY_ERROR, "bad_command", nameOf(member) + ": " + objection.data());
+    service_.event(msg::SEVERITY_ERROR, "bad_command", arbiter_.nameOf(member) + ": " + objection.data());
   }
   if (from_holder) {
     effort_ = effort;

@@ -29,7 +29,7 @@ msg::SimStatus Plant::status() const {
   status.rate(pacer_.rate());
   const std::int64_t until = ended_ns_ != 0 ? ended_ns_ : steadyNow();
   status.elapsed_s(started_ns_ == 0 ? 0.0 : static_cast<double>(until - started_ns_) * 1e-9);
-  status.holder(nameOf(arbiter_.holder()));
+  status.holder(arbiter_.nameOf(arbiter_.holder()));
   const Hold hold = master_.hold();
   if (hold == Hold::kNotStarted) {
     status.waiting_for(namesWaitedFor());
