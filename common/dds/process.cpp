@@ -4,10 +4,11 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -16,16 +17,27 @@ namespace baton::dds {
 // The system call itself, as older C libraries lack the function.
 int openPidfd(int pid) { return static_cast<int>(syscall(SYS_pidfd_open, pid, 0)); }
 
-std::uint64_t processBegan(int pid) {
+std::optional<ProcessFacts> factsOf(int pid) {
   std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
   const std::string text((std::istreambuf_iterator<char>(stat)), {});
-  if (text.empty()) return 0;
-  // "pid (name) state ...": the name may have blanks and brackets. The time is the twentieth word after it.
-  std::istringstream words(text.substr(std::min(text.rfind(')'), text.size() - 1) + 1));
-  std::string skipped;
-  for (int i = 0; i < 19; ++i) words >> skipped;
-  std::uint64_t ticks = 0;
-  return words >> ticks ? ticks : 0;
+  const std::size_t name_end = text.rfind(')');
+  if (name_end == std::string::npos) return std::nullopt;
+  // "pid (name) state parent ...", as in proc(5): the name may have blanks and brackets. From the fourth word, the
+  // parent, to the twenty-second, the time, all are numbers.
+  std::istringstream words(text.substr(name_end + 1));
+  std::string state;
+  std::array<long long, 19> numbers{};
+  words >> state;
+  for (long long& number : numbers) words >> number;
+  if (!words) return std::nullopt;
+  return ProcessFacts{.parent = static_cast<int>(numbers[0]),
+                      .cpu_ticks = static_cast<std::uint64_t>(numbers[10] + numbers[11]),
+                      .began = static_cast<std::uint64_t>(numbers[18])};
+}
+
+std::uint64_t processBegan(int pid) {
+  const std::optional<ProcessFacts> facts = factsOf(pid);
+  return facts ? facts->began : 0;
 }
 
 bool isRunning(int pid, std::uint64_t began) {

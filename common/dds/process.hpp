@@ -2,14 +2,24 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 namespace baton::dds {
 
 /// A descriptor that becomes readable when the process ends; -1, with the reason in errno, when there is none.
 [[nodiscard]] int openPidfd(int pid);
 
-/// When a process began, in ticks of the kernel since it started: with the number it is that process and no other. 0
-/// when there is none of that number, or the system does not tell.
+/// Ticks are the kernel's, sysconf(_SC_CLK_TCK) of them a second.
+struct ProcessFacts {
+  int parent = 0;
+  std::uint64_t cpu_ticks = 0;  // of its own and of the kernel for it
+  std::uint64_t began = 0;      // ticks after the machine: with the number it is that process and no other
+};
+
+/// What the system says of a process; nothing when there is none of that number, or it does not tell.
+[[nodiscard]] std::optional<ProcessFacts> factsOf(int pid);
+
+/// When it began, as ProcessFacts says; 0 when that is not known.
 [[nodiscard]] std::uint64_t processBegan(int pid);
 
 /// Whether it still runs and is not another with the same number. One that has ended and was not waited for does not

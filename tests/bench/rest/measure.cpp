@@ -6,14 +6,12 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <thread>
 
+#include "dds/process.hpp"
 #include "runtime/cell.hpp"
 #include "runtime/paths.hpp"
 #include "scenario.hpp"
@@ -33,27 +31,12 @@ struct Usage {
 
 /// Of these processes and all that descend from them.
 Usage usageBelow(const std::set<int>& ancestors) {
-  struct Process {
-    int parent = 0;
-    double ticks = 0.0;
-  };
-  std::map<int, Process> all;
+  std::map<int, dds::ProcessFacts> all;
   for (const fs::path& path : listFolder("/proc")) {
     const std::string name = path.filename().string();
     int pid = 0;
     if (std::from_chars(name.data(), name.data() + name.size(), pid).ec != std::errc()) continue;
-    std::ifstream stat(path / "stat");
-    const std::string text((std::istreambuf_iterator<char>(stat)), {});
-    if (text.rfind(')') == std::string::npos) continue;  // it has ended meanwhile
-    std::istringstream words(text.substr(text.rfind(')') + 1));
-    std::string state;
-    Process one;
-    words >> state >> one.parent;
-    double user = 0.0, system = 0.0;
-    for (int i = 0; i < 9; ++i) words >> state;  // to the fourteenth word of all
-    words >> user >> system;
-    one.ticks = user + system;
-    all[pid] = one;
+    if (const auto facts = dds::factsOf(pid)) all[pid] = *facts;  // else it has ended meanwhile
   }
   Usage usage;
   for (const auto& [pid, process] : all) {
@@ -63,7 +46,7 @@ Usage usageBelow(const std::set<int>& ancestors) {
     }
     if (!ancestors.contains(ancestor)) continue;
     ++usage.processes;
-    usage.cpu_s += process.ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
+    usage.cpu_s += static_cast<double>(process.cpu_ticks) / static_cast<double>(sysconf(_SC_CLK_TCK));
   }
   return usage;
 }
