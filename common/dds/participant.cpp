@@ -265,31 +265,26 @@ void Participant::Impl::onParticipantGone(const rtps::GUID_t& guid) {
 
 void Participant::Impl::onParticipant(const fastdds::ParticipantData& data) {
   const GuidPrefix prefix = toPrefix(data.guid);
-  const bool is_marked = key && key->roleOf(prefix);
+  const std::optional<Role> role = key ? key->roleOf(prefix) : std::nullopt;  // as the mark in the prefix says
   std::optional<Peer> peer = decodePeer({data.user_data.begin(), data.user_data.end()}, prefix);
-  if (!peer && !is_marked) return;
+  if (!peer && !role) return;
   if (!peer) peer.emplace().prefix = prefix;
   const bool is_ours = peer->cell == self.cell && peer->run == self.run;
-  const bool is_proven = key && is_ours && isProven(*peer, *key);
-  peer->is_stranger = key && (is_ours || is_marked) && !is_proven;
-  const bool is_new = [&] {
-    const std::lock_guard lock(mutex);
-    return !peers.contains(prefix) && !departed.contains(prefix);
-  }();
-  // Who was a service of our run and is dead when we first hear of it is another, under its GUID.
-  const bool is_heir =
-      is_new && is_proven && key->roleOf(prefix) != Role::kOperator && !isRunning(peer->pid, peer->process_began);
+  const bool is_member = role && is_ours && isProven(*peer, *key);
+  peer->is_stranger = key && (is_ours || role) && !is_member;
   {
     const std::lock_guard lock(mutex);
     if (departed.contains(prefix)) return;  // an announcement that comes late, or an heir's: nobody hears it
-    if (is_heir && departed.try_emplace(prefix, *peer).second) {
+    auto& known = peer->is_stranger ? strangers : peers;
+    if (const auto found = known.find(prefix); found != known.end() && found->second == *peer) return;  // said again
+    if (role && peers.contains(prefix)) return;  // a member is who it was when it came
+    // Who was a service of our run and is dead when we first hear of it is another, under its GUID.
+    if (is_member && role != Role::kOperator && !isRunning(peer->pid, peer->process_began)) {
+      departed.emplace(prefix, *peer);
       ++departures;
       return;
     }
-    auto& known = peer->is_stranger ? strangers : peers;
-    if (const auto found = known.find(prefix); found != known.end() && found->second == *peer) return;  // said again
-    if (is_marked && peers.contains(prefix)) return;                   // a member is who it was when it came
-    if (is_marked || known.size() < kMaxKnown) known[prefix] = *peer;  // marks cannot be made in number
+    if (role || known.size() < kMaxKnown) known[prefix] = *peer;  // marks cannot be made in number
     if (!peer->is_stranger) strangers.erase(prefix);
   }
   if (on_peer) on_peer(*peer);
