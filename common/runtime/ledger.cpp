@@ -165,32 +165,33 @@ std::vector<std::string> Ledger::problems() const {
   }
   const std::set<Key> vouched = vouchedFor();
   for (std::string& problem : unvouched(vouched)) result.push_back(std::move(problem));
-  for (std::string& problem : gaps(false, vouched)) result.push_back(std::move(problem));
+  for (std::string& problem : lossesOf(Concern::kVerdict, vouched)) result.push_back(std::move(problem));
   return result;
 }
 
-std::vector<std::string> Ledger::problemsSoFar() const { return gaps(false, {}); }
+std::vector<std::string> Ledger::problemsSoFar() const { return lossesOf(Concern::kVerdict, {}); }
 
-std::vector<std::string> Ledger::remarks() const { return gaps(true, {}); }
+std::vector<std::string> Ledger::remarks() const { return lossesOf(Concern::kRemark, {}); }
 
 bool Ledger::isRemarked(const std::string& topic) const { return are_foreign_remarked_ && dds::isForeignTopic(topic); }
 
-/// What is missing on topics that are remarked, or on those that are not: of streams other than these, of which is
-/// known already, and what concerns none in particular.
-std::vector<std::string> Ledger::gaps(bool remarked, const std::set<Key>& but) const {
+/// What is missing of streams other than these, of which is known already, and what cannot be recorded.
+std::vector<std::string> Ledger::lossesOf(Concern concern, const std::set<Key>& but) const {
   std::vector<std::string> result;
   for (const auto& [topic, what] : unrecordable_) {
-    if (isRemarked(topic) == remarked) result.push_back(what);
+    if (concernOf(topic) == concern) result.push_back(what);
   }
-  std::uint64_t dropped = 0;
-  for (const auto& [key, stream] : streams_) {
-    if (stream.excused == 0 && !isRemarked(key.first)) dropped += stream.dropped;
+  if (concern == Concern::kVerdict) {
+    result.insert(result.end(), lacks_.begin(), lacks_.end());
+    std::uint64_t dropped = 0;
+    for (const auto& [key, stream] : streams_) {
+      if (stream.excused == 0 && !isRemarked(key.first)) dropped += stream.dropped;
+    }
+    if (dropped > 0) result.push_back(std::to_string(dropped) + " samples came faster than they could be written");
   }
-  if (dropped > 0 && !remarked)
-    result.push_back(std::to_string(dropped) + " samples came faster than they could be written");
   for (const auto& [key, stream] : streams_) {
     const std::uint64_t missing = stream.missing - std::min(stream.missing, stream.excused);
-    if (missing == 0 || isRemarked(key.first) != remarked || mayLack(key.first)) continue;
+    if (missing == 0 || concernOf(key.first) != concern || mayLack(key.first)) continue;
     if (but.contains(key) || left_out_.contains(key.first)) continue;
     result.push_back(key.first + " of " + dds::toString(key.second) + ": " + std::to_string(missing) +
                      " samples are missing");
@@ -239,7 +240,7 @@ std::string Ledger::certificate() const {
 namespace {
 using Json = nlohmann::json;
 
-/// Calls back with each row of a certificate and its stream; what cannot be read is left to disagreements().
+/// Calls back with each row of a certificate and its stream; what cannot be read is left to compare().
 template <class Callback>
 void forEachRow(const std::string& certificate, const Callback& callback) {
   const Json json = Json::parse(certificate, nullptr, false);
@@ -290,66 +291,56 @@ void Ledger::excuse(const std::string& certificate) {
   });
 }
 
-/// Of the streams whose topics are remarked, or of the others.
-std::vector<std::string> Ledger::differences(const Json& certificate_json, bool remarked) const {
-  std::vector<std::string> result;
+void Ledger::compareRows(const Json& theirs, Comparison& comparison) const {
   const auto rowsOf = [](const Json& certificate) {
     std::map<std::pair<std::string, std::string>, Json> rows;
     for (const Json& row : certificate.at("streams")) rows[{row.at("topic"), row.at("writer")}] = row;
     return rows;
   };
-  auto their_rows = rowsOf(certificate_json);
+  const auto say = [&](const std::string& topic, const std::string& text) {
+    (isRemarked(topic) ? comparison.remarks : comparison.disagreements).push_back(text);
+  };
+  auto their_rows = rowsOf(theirs);
   for (const auto& [key, row] : rowsOf(Json::parse(certificate()))) {
-    const std::string what = key.first + " of writer " + key.second;
+    const auto& [topic, writer] = key;
+    const std::string what = topic + " of writer " + writer;
     const Json their_row = std::exchange(their_rows[key], {});
-    if (isRemarked(key.first) != remarked) continue;
     if (their_row.is_null()) {
-      result.push_back("the certificate does not know " + what);
+      say(topic, "the certificate does not know " + what);
       continue;
     }
     if (row.at("count") > 0 &&
         their_row.value("lost_before", std::uint64_t{0}) >= row.at("first_sequence").get<std::uint64_t>()) {
-      result.push_back("the certificate says of " + what +
-                       " that more was lost before its first sample than there was");
+      say(topic, "the certificate says of " + what + " that more was lost before its first sample than there was");
     }
     for (const auto& [field, value] : row.items()) {
-      if (their_row.value(field, Json()) == value) continue;
-      result.push_back("the certificate says otherwise of " + what + ": " + field + " " +
-                       their_row.value(field, Json()).dump() + ", the bytes give " + value.dump());
+      const Json their_value = their_row.value(field, Json());
+      if (their_value == value) continue;
+      say(topic, "the certificate says otherwise of " + what + ": " + field + " " + their_value.dump() +
+                     ", the bytes give " + value.dump());
       break;
     }
   }
   for (const auto& [key, row] : their_rows) {
-    if (row.is_null() || isRemarked(key.first) != remarked || row.value("count", std::uint64_t{0}) == 0) continue;
-    result.push_back("the certificate knows " + key.first + " of writer " + key.second + ", which is not there");
-  }
-  return result;
-}
-
-std::vector<std::string> Ledger::disagreements(const std::string& certificate_text) const {
-  try {
-    const Json theirs = Json::parse(certificate_text);
-    std::vector<std::string> result = differences(theirs, false);
-    if (theirs.at("complete").get<bool>() && !isComplete())
-      result.emplace_back("the certificate says complete, the bytes do not");
-    return result;
-  } catch (const Json::exception& error) {
-    return {std::string("the certificate cannot be read: ") + error.what()};
+    if (row.is_null() || row.value("count", std::uint64_t{0}) == 0) continue;
+    say(key.first, "the certificate knows " + key.first + " of writer " + key.second + ", which is not there");
   }
 }
 
-std::vector<std::string> Ledger::certifiedRemarks(const std::string& certificate_text) const {
-  std::vector<std::string> result;
+Ledger::Comparison Ledger::compare(const std::string& certificate_text) const {
+  Comparison result;
   try {
     const Json theirs = Json::parse(certificate_text);
     if (theirs.contains("remarks")) {
-      result = theirs.at("remarks").get<std::vector<std::string>>();
+      result.remarks = theirs.at("remarks").get<std::vector<std::string>>();
     } else {
-      result = remarks();
+      result.remarks = remarks();
     }
-    for (std::string& text : differences(theirs, true)) result.push_back(std::move(text));
+    compareRows(theirs, result);
+    if (theirs.at("complete").get<bool>() && !isComplete())
+      result.disagreements.emplace_back("the certificate says complete, the bytes do not");
   } catch (const Json::exception& error) {
-    result.push_back(std::string("the certificate's remarks cannot be read: ") + error.what());
+    result.disagreements.push_back(std::string("the certificate cannot be read: ") + error.what());
   }
   return result;
 }

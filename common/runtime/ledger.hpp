@@ -66,8 +66,10 @@ class Ledger {
   void remarkForeignTopics() { are_foreign_remarked_ = true; }
   /// Nothing is asked about this topic: it is left out on purpose.
   void leaveOut(const std::string& topic) { left_out_.insert(topic); }
-  /// Something of this topic that ought to be in the recording cannot be. Without a topic it is of foreign ones.
+  /// Something of this topic that ought to be in the recording cannot be.
   void cannotRecord(const std::string& topic, const std::string& what) { unrecordable_.insert({topic, what}); }
+  /// The same of no topic in particular.
+  void cannotRecord(const std::string& what) { lacks_.insert(what); }
   void addManifest(const msg::ServiceManifest& manifest);
 
   /// Another service has joined, of whom a manifest is to be expected.
@@ -89,9 +91,6 @@ class Ledger {
   /// One sentence for each thing that is missing of foreign topics, when these are remarked.
   [[nodiscard]] std::vector<std::string> remarks() const;
   [[nodiscard]] bool isRemarked(const std::string& topic) const;
-  /// The remarks in a certificate, those of the bytes where it has none, and one for each foreign topic of which it
-  /// says otherwise than certificate().
-  [[nodiscard]] std::vector<std::string> certifiedRemarks(const std::string& certificate) const;
   /// The certificate as JSON text: verdict, problems, one row a stream.
   [[nodiscard]] std::string certificate() const;
   /// What a certificate says is not in the files on purpose is not missed in them: topics, pauses, what came before
@@ -99,8 +98,12 @@ class Ledger {
   void excuse(const std::string& certificate);
   /// The sum over a stream's payloads begins with this one: what came before is gone, on purpose.
   void beginAt(const std::string& certificate);
-  /// One sentence for each thing that this certificate says otherwise than certificate(), but for remarked topics.
-  [[nodiscard]] std::vector<std::string> disagreements(const std::string& certificate) const;
+  struct Comparison {
+    std::vector<std::string> disagreements;  // one sentence for each thing that the two say otherwise
+    std::vector<std::string> remarks;        // of the certificate, else of the bytes; and the same of remarked topics
+  };
+  /// What this certificate says, held against certificate().
+  [[nodiscard]] Comparison compare(const std::string& certificate) const;
   /// A row of it.
   [[nodiscard]] nlohmann::ordered_json rowOf(const Stream& booked) const;
   [[nodiscard]] const std::map<Key, ReceivedStream>& streams() const { return streams_; }
@@ -112,14 +115,19 @@ class Ledger {
   [[nodiscard]] std::uint64_t missing() const;
 
  private:
+  enum class Concern { kVerdict, kRemark };  // what a loss does: it costs the verdict, or is only told
+
   void read(const std::string& topic, std::span<const std::byte> payload);
   void note(Stream& stream, std::uint64_t first_sequence, std::uint64_t last_sequence, const char* reason);
   [[nodiscard]] bool hasManifestOf(const std::string& service) const;
   [[nodiscard]] std::set<Key> vouchedFor() const;
   [[nodiscard]] std::vector<std::string> unvouched(const std::set<Key>& vouched) const;
   [[nodiscard]] std::vector<std::string> problemsOf(const msg::ServiceManifest& manifest) const;
-  [[nodiscard]] std::vector<std::string> differences(const nlohmann::json& certificate, bool remarked) const;
-  [[nodiscard]] std::vector<std::string> gaps(bool remarked, const std::set<Key>& but) const;
+  void compareRows(const nlohmann::json& certificate, Comparison& comparison) const;
+  [[nodiscard]] std::vector<std::string> lossesOf(Concern concern, const std::set<Key>& but) const;
+  [[nodiscard]] Concern concernOf(const std::string& topic) const {
+    return isRemarked(topic) ? Concern::kRemark : Concern::kVerdict;
+  }
 
   std::set<std::string> services_;
   std::set<std::string> given_up_;
@@ -127,6 +135,7 @@ class Ledger {
   std::vector<Gap> gaps_;
   std::set<std::string> left_out_;
   std::set<std::pair<std::string, std::string>> unrecordable_;  // topic, sentence
+  std::set<std::string> lacks_;
   bool are_foreign_remarked_ = false;
   struct Testimony {
     std::uint64_t count = 0;

@@ -227,8 +227,9 @@ void judge(const std::vector<Part>& parts, bool are_all, const std::optional<std
     }
     add(result.missing, result.is_traffic ? result.ledger.problemsSoFar() : result.ledger.problems());
     if (!certificate) return result.missing.emplace_back("it has no certificate"), void();
-    add(result.missing, result.ledger.disagreements(*certificate));
-    if (!result.is_traffic) add(result.remarks, result.ledger.certifiedRemarks(*certificate));
+    Ledger::Comparison certified = result.ledger.compare(*certificate);
+    add(result.missing, std::move(certified.disagreements));
+    add(result.remarks, std::move(certified.remarks));
     const std::string verdict = metadataValue(*parts.back().reader, "baton.certificate", "complete");
     result.summary = metadataValue(*parts.back().reader, "baton.certificate", "summary");
     if (verdict != "true" && result.missing.empty()) result.missing.push_back("its certificate says " + result.summary);

@@ -167,15 +167,14 @@ void TrafficSession::noteWhatCannotBeRecorded(const Recording& recording) {
   result_.left_out = topics_.leftOut();
   for (const std::string& topic : result_.left_out) ledger_.leaveOut(topic);
   for (const auto& [topic, text] : topics_.unreadable()) ledger_.cannotRecord(topic, text);
-  for (const std::string& what : topics_.unmatchedWriters(kMatchPatience)) ledger_.cannotRecord("", what);
+  for (const std::string& what : topics_.unmatchedWriters(kMatchPatience)) ledger_.cannotRecord(what);
   if (recording.messages() > 0) return;
-  ledger_.cannotRecord(
-      "", fmt::format(
-              "nothing came: expected writers in domain {} on {}, found {}; check --domain, --interface, --topics and "
-              "--partition",
-              options_.domain,
-              options_.interfaces.empty() ? "any interface" : fmt::format("{}", fmt::join(options_.interfaces, ", ")),
-              result_.left_out.empty() ? "none that sent anything" : "only topics that are left out"));
+  ledger_.cannotRecord(fmt::format(
+      "nothing came: expected writers in domain {} on {}, found {}; check --domain, --interface, --topics and "
+      "--partition",
+      options_.domain,
+      options_.interfaces.empty() ? "any interface" : fmt::format("{}", fmt::join(options_.interfaces, ", ")),
+      result_.left_out.empty() ? "none that sent anything" : "only topics that are left out"));
 }
 
 /// Once; whatever happens here, the recording is over.

@@ -36,14 +36,14 @@ TEST_F(LedgerRemarksTest, ACertificateThatSaysOtherwiseOfAForeignTopicIsRemarked
   other["complete"] = false;
   other["remarks"] = {"half of it is elsewhere"};
   for (Json& row : other["streams"]) row["count"] = 2;
-  const std::vector<std::string> own = ledger_.disagreements(other.dump());
-  ASSERT_EQ(own.size(), 1u);
-  EXPECT_TRUE(mentions(own, "contact of writer"));
-  const std::vector<std::string> remarks = ledger_.certifiedRemarks(other.dump());
-  ASSERT_EQ(remarks.size(), 2u);
-  EXPECT_EQ(remarks[0], "half of it is elsewhere");
-  EXPECT_TRUE(mentions(remarks, "their_topic of writer"));
-  EXPECT_TRUE(mentions(ledger_.certifiedRemarks("no JSON"), "cannot be read"));
+  const Ledger::Comparison comparison = ledger_.compare(other.dump());
+  ASSERT_EQ(comparison.disagreements.size(), 1u);
+  EXPECT_TRUE(mentions(comparison.disagreements, "contact of writer"));
+  ASSERT_EQ(comparison.remarks.size(), 2u);
+  EXPECT_EQ(comparison.remarks[0], "half of it is elsewhere");
+  EXPECT_TRUE(mentions(comparison.remarks, "their_topic of writer"));
+  other["remarks"] = 5;
+  EXPECT_TRUE(mentions(ledger_.compare(other.dump()).disagreements, "cannot be read"));
 }
 
 }  // namespace

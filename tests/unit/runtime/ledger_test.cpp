@@ -203,12 +203,12 @@ TEST_F(LedgerTest, AgreesWithItsOwnCertificateAndWithNoOther) {
   transmit(contact_, 10, [](std::uint64_t sequence) { return sequence != 4; });
   ledger_.addManifest(manifestOf("plant", {&state_}));
   ledger_.addManifest(manifestOf("environment", {&contact_}));
-  EXPECT_TRUE(ledger_.disagreements(ledger_.certificate()).empty());
+  EXPECT_TRUE(ledger_.compare(ledger_.certificate()).disagreements.empty());
 
   const auto disagreementsWith = [&](const std::function<void(Json&)>& change) {
     Json text = certificate();
     change(text);
-    return ledger_.disagreements(text.dump());
+    return ledger_.compare(text.dump()).disagreements;
   };
   EXPECT_TRUE(
       mentions(disagreementsWith([](Json& text) { text["complete"] = true; }), "says complete, the bytes do not"));
@@ -233,7 +233,7 @@ TEST_F(LedgerTest, AgreesWithItsOwnCertificateAndWithNoOther) {
                        }),
                        "knows more of writer"));
   for (const char* text : {"", "{", "[]", "{}", R"({"complete": 1, "streams": []})", R"({"streams": [1]})"}) {
-    EXPECT_FALSE(ledger_.disagreements(text).empty()) << text;
+    EXPECT_FALSE(ledger_.compare(text).disagreements.empty()) << text;
   }
 }
 
@@ -263,7 +263,7 @@ TEST_F(LedgerTest, WhatACertificateSaysIsNotInTheFilesOnPurposeIsNotMissedThere)
   Ledger other = ledger_;
   other.excuse(told.dump());
   EXPECT_TRUE(other.isComplete()) << other.problems().front();
-  EXPECT_TRUE(other.disagreements(told.dump()).empty());
+  EXPECT_TRUE(other.compare(told.dump()).disagreements.empty());
 
   // But what it says came has to be what was sent,
   Json less = told;
@@ -276,7 +276,7 @@ TEST_F(LedgerTest, WhatACertificateSaysIsNotInTheFilesOnPurposeIsNotMissedThere)
   less["streams"][0]["left_out"] = 9;
   other = ledger_;
   other.excuse(less.dump());
-  EXPECT_FALSE(other.disagreements(less.dump()).empty());
+  EXPECT_FALSE(other.compare(less.dump()).disagreements.empty());
   for (const char* text : {"", "{", "[]", "{}", R"({"left_out": 1})", R"({"streams": [1]})", R"({"run_is_over": 3})"}) {
     other = ledger_;
     other.excuse(text);
@@ -411,6 +411,10 @@ TEST_F(LedgerTest, WhatCannotBeRecordedIsAProblem) {
   ledger_.cannotRecord("plant_state", "a writer of another type");
   EXPECT_TRUE(mentions(ledger_.problems(), "a writer of another type"));
   EXPECT_TRUE(mentions(ledger_.problemsSoFar(), "a writer of another type"));
+  ledger_.remarkForeignTopics();
+  ledger_.cannotRecord("nothing came");
+  EXPECT_TRUE(mentions(ledger_.problems(), "nothing came")) << "of no topic: it is not a foreign one's";
+  EXPECT_TRUE(ledger_.remarks().empty());
 }
 
 TEST_F(LedgerTest, TheCertificateIsWrittenWhateverBytesAForeignNameHas) {
