@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace baton {
 
@@ -17,14 +18,18 @@ enum class ExitCode : int {
   kInterrupted = 130  // by a signal that asks for the end: common/runtime/signals.hpp
 };
 
-/// The message says what was expected, what was found, and what to do.
+/// The message says what was expected, what was found, and what to do. It is shown as one line; `details` are lines
+/// that follow it, as the end of a log.
 class Error : public std::runtime_error {
  public:
-  Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  Error(ExitCode code, const std::string& message, std::string details = "")
+      : std::runtime_error(message), code_(code), details_(std::move(details)) {}
   [[nodiscard]] ExitCode code() const { return code_; }
+  [[nodiscard]] const std::string& details() const { return details_; }
 
  private:
   ExitCode code_;
+  std::string details_;
 };
 
 /// Wrong input: a file, a value, an argument.
@@ -36,7 +41,8 @@ class UsageError : public Error {
 /// Something needed is not there or is taken.
 class UnavailableError : public Error {
  public:
-  explicit UnavailableError(const std::string& message) : Error(ExitCode::kUnavailable, message) {}
+  explicit UnavailableError(const std::string& message, std::string details = "")
+      : Error(ExitCode::kUnavailable, message, std::move(details)) {}
 };
 
 }  // namespace baton

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <mutex>
+#include <sstream>
 #include <utility>
 
 #include "base/text.hpp"
@@ -21,7 +22,11 @@ namespace {
 class Sink final : public spdlog::sinks::base_sink<std::mutex> {
   void sink_it_(const spdlog::details::log_msg& message) override {
     spdlog::memory_buf_t line;
-    formatter_->format(message, line);
+    // What it tells of others begins no line of its own, which would look like another message.
+    const std::string text = escaped(std::string_view(message.payload.data(), message.payload.size()));
+    spdlog::details::log_msg shown = message;
+    shown.payload = text;
+    formatter_->format(shown, line);
     sayText(std::string_view(line.data(), line.size()), stderr);
   }
   void flush_() override { std::fflush(stderr); }
@@ -36,6 +41,11 @@ void setUpLog(const std::string& name) {
   dds::redirectDdsLog([](int level, const std::string& text) {
     spdlog::log(level == 0 ? spdlog::level::err : spdlog::level::warn, "dds: {}", text);
   });
+}
+
+void logLastLines(const std::filesystem::path& log, std::size_t count) {
+  std::istringstream lines(lastLines(log, count));
+  for (std::string line; std::getline(lines, line);) spdlog::error("{}", line);
 }
 
 std::string lastLines(const std::filesystem::path& log, std::size_t count) {

@@ -13,6 +13,8 @@ void setUpLog(const std::string& name);
 
 /// The last lines of a log, indented; empty when it cannot be read.
 [[nodiscard]] std::string lastLines(const std::filesystem::path& log, std::size_t count);
+/// Writes them to our own.
+void logLastLines(const std::filesystem::path& log, std::size_t count);
 /// The last line of a log that tells of an error, its last line when none does.
 [[nodiscard]] std::string lastError(const std::filesystem::path& log);
 

@@ -277,7 +277,7 @@ std::vector<std::string> missingParts(const std::vector<std::string>& files) {
 
 mcap::FileList findRecording(const RecordingWish& wish, ExitCode& exit_code) {
   FoundRecording found = findRecording(wish);
-  for (const std::string& hole : found.missing) say(stderr, "baton: warning: %s\n", hole.c_str());
+  for (const std::string& hole : found.missing) sayWarning(hole);
   if (!found.missing.empty()) exit_code = ExitCode::kFailed;
   return std::move(found.files);
 }

@@ -14,21 +14,27 @@
 namespace baton {
 
 namespace {
+
+void tell(const std::string& name, const std::string& message, const std::string& details = "") {
+  // It may name what a recording or another process calls itself.
+  sayText(escaped(name + ": " + message) + '\n' + details, stderr);
+}
+
 int guarded(const std::string& name, const std::function<ExitCode()>& body) {
   try {
     return static_cast<int>(body());
   } catch (const Error& error) {
-    // It may name what a recording or another process calls itself.
-    sayText(name + ": " + escaped(error.what(), true) + '\n', stderr);
+    tell(name, error.what(), error.details());
     return static_cast<int>(error.code());
   } catch (const std::filesystem::filesystem_error& error) {
-    sayText(name + ": cannot use " + error.path1().string() + ": " + error.code().message() + '\n', stderr);
+    tell(name, "cannot use " + error.path1().string() + ": " + error.code().message());
     return static_cast<int>(ExitCode::kUnavailable);
   } catch (const std::exception& error) {
-    sayText(name + ": unexpected: " + error.what() + '\n', stderr);
+    tell(name, std::string("unexpected: ") + error.what());
     return static_cast<int>(ExitCode::kFailed);
   }
 }
+
 }  // namespace
 
 int runGuarded(const std::string& name, const std::function<ExitCode()>& body) {

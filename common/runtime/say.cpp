@@ -26,6 +26,8 @@ void sayText(std::string_view text, std::FILE* out) {
   std::fwrite(shown.data(), 1, shown.size(), out);
 }
 
+void sayWarning(std::string_view text) { sayText("baton: warning: " + escaped(text) + '\n', stderr); }
+
 void say(const char* format, ...) {
   std::va_list values;
   va_start(values, format);

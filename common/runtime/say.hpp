@@ -1,24 +1,44 @@
 /// All that programs print for people, and the one place that knows a terminal: names and texts of others may come with
-/// what would clear it, hide lines or type for the reader. Control characters and what is not UTF-8 are shown escaped,
-/// as base/text.hpp does; line breaks stay.
+/// what would clear it, hide lines, begin lines of their own or type for the reader. Control characters and what is not
+/// UTF-8 are shown escaped, as base/text.hpp does.
 #pragma once
 
 #include <spdlog/fmt/fmt.h>
 
 #include <cstdio>
+#include <string>
 #include <string_view>
-#include <utility>
+#include <type_traits>
+
+#include "base/text.hpp"
 
 namespace baton {
 
+/// Line breaks stay: for text of several lines. Names of others within it are escaped() before.
 void sayText(std::string_view text, std::FILE* out = stdout);
 
-// As printf, fprintf and fmt::print.
+// As printf and fprintf; line breaks stay in the values, too.
 void say(const char* format, ...) __attribute__((format(printf, 1, 2)));
 void say(std::FILE* out, const char* format, ...) __attribute__((format(printf, 2, 3)));
-template <class... Values>
-void sayf(fmt::format_string<Values...> format, Values&&... values) {
-  sayText(fmt::format(format, std::forward<Values>(values)...));
+
+/// Text without its line breaks, and what else there is as it is.
+template <class Value>
+decltype(auto) withinLine(const Value& value) {
+  if constexpr (std::is_convertible_v<const Value&, std::string_view>) {
+    return escaped(value);
+  } else {
+    return (value);
+  }
 }
+
+/// As fmt::print. A value that is text stays within its line.
+template <class... Values>
+void sayf(fmt::format_string<Values...> format, const Values&... values) {
+  const auto print = [&](const auto&... all) { sayText(fmt::vformat(format, fmt::make_format_args(all...))); };
+  print(withinLine(values)...);
+}
+
+/// One line on standard error.
+void sayWarning(std::string_view text);
 
 }  // namespace baton

@@ -18,8 +18,7 @@ CellClient::CellClient(const RunInfo& info)
                      const std::lock_guard lock(mutex_);
                      changed_.notify_all();
                    }),
-      admission_(participant_, false,
-                 [](const std::string& text) { say(stderr, "baton: warning: %s\n", text.c_str()); }) {}
+      admission_(participant_, false, sayWarning) {}
 
 namespace {
 /// How the cell's last run ended, as a sentence; empty when there was none.

@@ -64,7 +64,7 @@ ModelReport evaluate(const ModelRequest& request) {
   ModelReport report;
   std::vector<std::string> warnings;
   report.robot = loadRobot(findRobot(request.robot), &warnings);
-  for (const std::string& warning : warnings) say(stderr, "baton: warning: %s\n", warning.c_str());
+  for (const std::string& warning : warnings) sayWarning(warning);
   const RobotModel& robot = report.robot;
   report.q = parseNumbers("--q", request.q, robot.size(), "joint");
   report.qd = parseNumbers("--qd", request.qd, robot.size(), "joint");

@@ -93,7 +93,7 @@ nlohmann::ordered_json runInProcess(const std::string& scenario_name) {
   const std::chrono::steady_clock::time_point launched = std::chrono::steady_clock::now();
   const std::string file = findScenario(scenario_name).string();
   const Scenario scenario = loadScenario(file);
-  for (const std::string& warning : scenario.warnings) say(stderr, "baton: warning: %s\n", warning.c_str());
+  for (const std::string& warning : scenario.warnings) sayWarning(warning);
   if (scenario.end_step == 0) {
     throw UsageError(file + ": expected a scenario with an end (duration_s), found none");
   }

@@ -127,7 +127,7 @@ RunSession::~RunSession() = default;
 RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std::make_unique<SignalCounter>()) {
   info_.scenario = findScenario(request.scenario).string();
   const Scenario scenario = loadScenario(info_.scenario);  // a mistake in it is told here, not in a log
-  for (const std::string& warning : scenario.warnings) say(stderr, "baton: warning: %s\n", warning.c_str());
+  for (const std::string& warning : scenario.warnings) sayWarning(warning);
   if (const std::optional<RunInfo> other = activeRun(request.domain, request.cell)) {
     throw UnavailableError("cell " + request.cell + " is in use by run " + other->run + " of " + other->scenario +
                            ": end it with `baton down --cell " + request.cell + " --domain " +
@@ -208,10 +208,12 @@ nlohmann::ordered_json RunSession::result() const {
     const std::string last = lastLines(logFile(), 8);
     throw UnavailableError(
         std::string("the run ended without a result: ") + error.what() +
-        (last.empty() ? "; its log, " + logFile() +
-                            ", is empty, as a full disk, too few files that a process may open (ulimit -n) and kill -9 "
-                            "leave it"
-                      : "; the end of " + logFile() + ":\n" + last));
+            (last.empty()
+                 ? "; its log, " + logFile() +
+                       ", is empty, as a full disk, too few files that a process may open (ulimit -n) and kill "
+                       "-9 leave it"
+                 : "; the end of " + logFile() + ":"),
+        last);
   }
 }
 

@@ -230,7 +230,8 @@ void Supervisor::childFailed(Child& child, const Child::End& end) {
   const bool is_controller = roles_[name] == "controller";
   const bool is_restarted = has_started && !is_wanted && restarts_left_[name]-- > 0;
   if (has_started && !is_wanted && (is_controller || is_restarted)) {
-    spdlog::error("{}\n{}", why, lastLines(child.command().log_file, 5));
+    spdlog::error("{}", why);
+    logLastLines(child.command().log_file, 5);
     if (!scenario_.wantsFaultOf(name)) fail(ExitCode::kFailed, why);
   }
   // Who comes back is waited for like anybody who is late; what the end of the others means, the plant decides.
@@ -255,7 +256,8 @@ void Supervisor::childFailed(Child& child, const Child::End& end) {
   const std::string reason = ": " + lastError(child.command().log_file);
   fail(isRefusal(end) ? static_cast<ExitCode>(end.value) : ExitCode::kFailed,
        !has_started ? name + " could not start (" + end.text() + ")" + reason : why + (isRefusal(end) ? reason : ""));
-  spdlog::error("{}\n{}", reason_, lastLines(child.command().log_file, 5));
+  spdlog::error("{}", reason_);
+  logLastLines(child.command().log_file, 5);
   if (name == kPlantName) {
     endForThePlant();
   } else if (!has_started || name == kRecorderName) {

@@ -15,9 +15,7 @@
 namespace baton {
 namespace {
 
-std::string nameOf(const StreamKey& key) {
-  return escaped(key.second.empty() ? key.first : key.first + " of " + key.second);
-}
+std::string nameOf(const StreamKey& key) { return key.second.empty() ? key.first : key.first + " of " + key.second; }
 
 std::string textOf(const Position& at) {
   std::string text = at.step ? "step " + std::to_string(*at.step) : "message " + std::to_string(at.index + 1);
@@ -28,7 +26,7 @@ std::string textOf(const Position& at) {
 
 std::string textOf(const FirstDifference& first) {
   const FieldDifference& what = first.what;
-  return textOf(first.at) + escaped((what.field.empty() ? "" : ", " + what.field) + ": " + what.a + " | " + what.b);
+  return textOf(first.at) + (what.field.empty() ? "" : ", " + what.field) + ": " + what.a + " | " + what.b;
 }
 
 /// Which take of each recording is compared; empty where neither was reset.
@@ -48,8 +46,8 @@ void printText(const DiffRequest& request, const RecordingDiff& diff) {
     service_width = std::max(service_width, escaped(key.second).size());
   }
   const auto first = diff.firstDifferent();
-  sayf("{}: A {}, B {}\n{}", diff.isSame() ? "same" : "different", request.a.string(), request.b.string(),
-       takesText(diff));
+  sayf("{}: A {}, B {}\n", diff.isSame() ? "same" : "different", request.a.string(), request.b.string());
+  sayText(takesText(diff));
   if (first) {
     sayf("first       {}, {}\n", nameOf(*first), textOf(*diff.streams.at(*first).first));
   }
@@ -58,14 +56,13 @@ void printText(const DiffRequest& request, const RecordingDiff& diff) {
          *diff.first_step[1], *later);
   }
   if (!diff.left_out.empty()) {
-    sayf("left out    {}\n", escaped(fmt::format("{}", fmt::join(diff.left_out, ", "))));
+    sayf("left out    {}\n", fmt::format("{}", fmt::join(diff.left_out, ", ")));
   }
   sayf("\n{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  first difference, A | B\n", "topic", topic_width, "service",
        service_width, "compared", "different", "only in A", "only in B");
   for (const auto& [key, stream] : diff.streams) {
-    sayf("{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  {}\n", escaped(key.first), topic_width, escaped(key.second),
-         service_width, stream.compared, stream.different, stream.only_a, stream.only_b,
-         stream.first ? textOf(*stream.first) : "");
+    sayf("{:<{}}  {:<{}}  {:>9}  {:>9}  {:>9}  {:>9}  {}\n", key.first, topic_width, key.second, service_width,
+         stream.compared, stream.different, stream.only_a, stream.only_b, stream.first ? textOf(*stream.first) : "");
   }
 }
 
@@ -116,9 +113,7 @@ ExitCode diff(DiffWish& wish) {
     ProgressLine line;
     found = diffRecordings(request, [&](double part) { line.show("comparing " + progressBar(part)); });
   }
-  for (const std::string& warning : found.warnings) {
-    say(stderr, "baton: warning: %s\n", escaped(warning).c_str());
-  }
+  for (const std::string& warning : found.warnings) sayWarning(warning);
   if (wish.json) {
     sayText(toText(toJson(request, found)) + '\n');
   } else {

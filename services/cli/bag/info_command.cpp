@@ -161,9 +161,9 @@ void printTopics(const BagSummary& bag) {
   sayf("\n{:<{}}  {:<{}}  {:>9}  {:>9}  {:>6}  writers\n", "topic", name_width, "type", type_width, "messages",
        "rate [Hz]", "gaps");
   for (const auto& [key, topic] : bag.topics) {
-    sayf("{:<{}}  {:<{}}  {:>9}  {:>9.1f}  {:>6}  {}\n", escaped(key.first), name_width, escaped(key.second),
-         type_width, topic.messages, topic.rate(), topic.gaps ? fmt::to_string(*topic.gaps) : "-",
-         escaped(fmt::format("{}", fmt::join(topic.writers, ", "))));
+    sayf("{:<{}}  {:<{}}  {:>9}  {:>9.1f}  {:>6}  {}\n", key.first, name_width, key.second, type_width, topic.messages,
+         topic.rate(), topic.gaps ? fmt::to_string(*topic.gaps) : "-",
+         fmt::format("{}", fmt::join(topic.writers, ", ")));
   }
 }
 
@@ -176,11 +176,11 @@ std::vector<std::string> notesOn(const BagSummary& bag) {
 
 void printText(const BagSummary& bag) {
   sayf("{}: {}\n", bag.file, nameOf(verdictOn(bag)));
-  sayf("            {}\n", escaped(reasonFor(bag)));
-  for (std::size_t i = 1; i < bag.damage.size(); ++i) sayf("            {}\n", escaped(bag.damage[i]));
-  for (const std::string& note : notesOn(bag)) sayf("note        {}\n", escaped(note));
+  sayf("            {}\n", reasonFor(bag));
+  for (std::size_t i = 1; i < bag.damage.size(); ++i) sayf("            {}\n", bag.damage[i]);
+  for (const std::string& note : notesOn(bag)) sayf("note        {}\n", note);
   if (!bag.run.empty()) {
-    const auto of = [&](const char* key) { return escaped(valueOf(bag.run, key)); };
+    const auto of = [&](const char* key) { return valueOf(bag.run, key); };
     if (of("kind") == "traffic") {
       sayf("recorded    traffic of domain {} on {} (interfaces: {}), begun {}\n", of("domain"), of("host"),
            of("interfaces"), of("begun"));
@@ -195,8 +195,7 @@ void printText(const BagSummary& bag) {
   sayf("size        {:.2f} MB, messages compressed {:.2f} : 1\n", static_cast<double>(bag.info.file_bytes) * 1e-6,
        bag.compression());
   for (const mcap::AttachmentIndex& attachment : bag.attachments) {
-    sayf("attachment  {} ({}, {} bytes)\n", escaped(attachment.name), escaped(attachment.media_type),
-         attachment.data_size);
+    sayf("attachment  {} ({}, {} bytes)\n", attachment.name, attachment.media_type, attachment.data_size);
   }
   printTopics(bag);
 }

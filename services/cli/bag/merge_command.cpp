@@ -174,7 +174,7 @@ ExitCode merge(MergeRequest& request) {
   request.out.file = takeLast(request.given);
   const std::vector<std::string> files = filesOf({.given = request.given});
   const std::vector<std::string> missing = missingParts(files);
-  for (const std::string& one : missing) say(stderr, "baton: warning: %s\n", one.c_str());
+  for (const std::string& one : missing) sayWarning(one);
   std::vector<Source> sources = openSources(files);
   mcap::Copier copy(request.out.file, optionsFor(request.out, files));
   copyExtras(sources, missing.empty() && areParts(sources), copy);

@@ -6,7 +6,6 @@
 
 #include "bag/copy_target.hpp"
 #include "bag/subcommands.hpp"
-#include "base/text.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
 #include "runtime/say.hpp"
@@ -49,16 +48,16 @@ std::string verdictOn(const mcap::Recovery& found) {
 }
 
 void printText(const RecoverRequest& request, const mcap::Recovery& found) {
-  sayf("{}: {}\n", request.in, escaped(verdictOn(found)));
+  sayf("{}: {}\n", request.in, verdictOn(found));
   for (const mcap::Damage& damage : found.lost) {
     if (damage.length == 0) {
-      sayf("lost        {}\n", escaped(mcap::describe(damage)));
+      sayf("lost        {}\n", mcap::describe(damage));
     } else {
       sayf("lost        {} bytes from byte {} on{}: {}\n", damage.length, damage.offset,
-           damage.messages > 0 ? fmt::format(", with {} messages", damage.messages) : "", escaped(damage.reason));
+           damage.messages > 0 ? fmt::format(", with {} messages", damage.messages) : "", damage.reason);
     }
   }
-  for (const std::string& note : found.info.contradictions) sayf("note        {}\n", escaped(note));
+  for (const std::string& note : found.info.contradictions) sayf("note        {}\n", note);
   if (found.info.unknown_records > 0) {
     sayf("left out    {} records of kinds that MCAP does not know\n", found.info.unknown_records);
   }

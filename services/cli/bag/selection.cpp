@@ -49,7 +49,7 @@ SelectedMessages::SelectedMessages(const Selection& selection)
 
 void SelectedMessages::warn(const std::string& file, const std::string& problem) {
   progress_.show("");
-  say(stderr, "baton: warning: %s: %s\n", file.c_str(), escaped(problem).c_str());
+  sayWarning(file + ": " + problem);
 }
 
 void SelectedMessages::complain(const std::string& file, const std::string& problem) {

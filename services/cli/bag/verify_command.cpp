@@ -6,7 +6,6 @@
 
 #include "bag/subcommands.hpp"
 #include "bag/verify.hpp"
-#include "base/text.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
 #include "runtime/recording_files.hpp"
@@ -21,7 +20,7 @@ struct VerifyRequest {
 };
 
 void printText(const Verification& found) {
-  sayf("{}: {}\n", fmt::join(found.files, ", "), nameOf(found.verdict()));
+  sayf("{}: {}\n", fmt::format("{}", fmt::join(found.files, ", ")), nameOf(found.verdict()));
   if (found.verdict() == RecordingVerdict::kComplete) {
     if (found.is_traffic) {
       sayf(
@@ -38,15 +37,15 @@ void printText(const Verification& found) {
       sayf("            ended, so nobody vouches for what was sent last\n");
     }
     sayf("            and the certificate in the file agrees; every checksum is right\n");
-    if (found.summary != "complete") sayf("            by its certificate: {}\n", escaped(found.summary));
+    if (found.summary != "complete") sayf("            by its certificate: {}\n", found.summary);
   }
   for (const auto* findings : {&found.damage, &found.cuts, &found.missing}) {
-    for (const std::string& text : *findings) sayf("            {}\n", escaped(text));
+    for (const std::string& text : *findings) sayf("            {}\n", text);
   }
   if (!found.damage.empty() || !found.cuts.empty()) {
     sayf("            `bag recover` makes a recording of all that can be read, with an index that is right\n");
   }
-  for (const std::string& text : found.remarks) sayf("note        {}\n", escaped(text));
+  for (const std::string& text : found.remarks) sayf("note        {}\n", text);
   for (const std::string& text : found.log_times.findings()) sayf("note        {}\n", text);
   sayf("messages    {} in {} streams\n", found.messages, found.ledger.streams().size());
   sayf("size        {:.2f} MB\n", static_cast<double>(found.bytes) * 1e-6);

@@ -4,8 +4,12 @@
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
 
+#include <stdexcept>
+
+#include "base/error.hpp"
 #include "runtime/json.hpp"
 #include "runtime/log.hpp"
+#include "runtime/run.hpp"
 
 namespace baton {
 namespace {
@@ -26,15 +30,36 @@ TEST(Say, ShowsWhatATerminalWouldObey) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), kShown + "\n");
 }
 
+TEST(Say, NobodysNameBeginsALine) {
+  const std::string name = "a\nrecording: complete", shown = "a\\nrecording: complete";
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  sayf("{:<{}}|{}|{}|{}\n", name, 25, std::string_view(name), name.c_str(), "b\nc");
+  sayWarning(name);
+  EXPECT_EQ(runGuarded("baton",
+                       [&]() -> ExitCode {
+                         throw UnavailableError("topic " + name + " is not there; the end of the log:",
+                                                "  one\n  two\n");
+                       }),
+            3);
+  EXPECT_EQ(runGuarded("baton", [&]() -> ExitCode { throw std::logic_error(name); }), 1);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), shown + "   |" + shown + "|" + shown + "|b\\nc\n");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "baton: warning: " + shown + "\nbaton: topic " + shown +
+                                                        " is not there; the end of the log:\n  one\n  two\n" +
+                                                        "baton: unexpected: " + shown + "\n");
+}
+
 TEST(Say, ALogDoesTheSame) {
   const auto before = spdlog::default_logger();
   testing::internal::CaptureStderr();
   setUpLog("test");
   spdlog::warn("{}", kHostile);
+  spdlog::warn("{}", "topic a\n03:15:12.345678 error plant: forged");
   spdlog::default_logger()->flush();
   const std::string log = testing::internal::GetCapturedStderr();
   spdlog::set_default_logger(before);
   EXPECT_NE(log.find(" warning test: " + kShown + "\n"), std::string::npos) << log;
+  EXPECT_NE(log.find(" warning test: topic a\\n03:15:12.345678 error plant: forged\n"), std::string::npos) << log;
 }
 
 TEST(Say, JsonIsPrintedAsItIs) {
