@@ -58,11 +58,10 @@ std::string passText(std::uint64_t begin_ns) { return begin_ns > 0 ? ", in its l
 
 const char* const kRangeHelp =
     "Ranges: --from-step and --to-step take every sample of the control loop by the step it carries (also of foreign\n"
-    "types with a member `unsigned long long step`), --from-sim and --to-sim the same by simulated time, step x "
-    "length\n"
-    "of a step. Events, requests, statuses and samples without a step are taken by log time, from the first to the "
-    "last\n"
-    "sample that was taken by its step. Of a run that was reset both take the last pass, as `bag hash` does.\n";
+    "types with a member `unsigned long long step`), --from-sim and --to-sim the same by simulated time, step x\n"
+    "length of a step. Events, requests, statuses and samples without a step are taken by log time, from the\n"
+    "first to the last sample that was taken by its step. Of a run that was reset both take the last pass, as\n"
+    "`bag hash` does.\n";
 
 void addRange(CLI::App& command, RangeWish& wish) {
   command.add_option("--from", wish.from_s, "start here, in s of log time from the recording's first message")

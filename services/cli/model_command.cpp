@@ -182,11 +182,10 @@ void addModelCommand(CLI::App& app, ExitCode& /*exit_code*/) {
       "Numbers may be multiples of pi. One that begins with -pi needs the short form: --q=-pi/6,0.2,0.1\n"
       "SI units; by joint kind rad and N m, or m and N. Twists and wrenches are [linear; angular], of the tip, in the\n"
       "world frame. tau = B qdd + C qd + g + friction + J^T h_e, h_e the wrench the tip exerts on the environment.\n"
-      "Keys of --json (matrices are lists of rows, numbers have full precision): robot; joints: name, kind; q, qd, "
-      "qdd,\n"
-      "wrench: as given; p_WE_m, R_WE, zyz_rad: pose of the tip in the world, its ZYZ angles; J, J_A: geometric and\n"
-      "analytical Jacobian, 6 x n, J_A null where the ZYZ angles are singular; B, C, g: by Lagrange; friction;\n"
-      "tau_newton_euler, tau_lagrange: tau by either road; tau_difference: the first minus the second.");
+      "Keys of --json (matrices are lists of rows, numbers have full precision): robot; joints: name, kind; q, qd,\n"
+      "qdd, wrench: as given; p_WE_m, R_WE, zyz_rad: pose of the tip in the world, its ZYZ angles; J, J_A:\n"
+      "geometric and analytical Jacobian, 6 x n, J_A null where the ZYZ angles are singular; B, C, g: by Lagrange;\n"
+      "friction; tau_newton_euler, tau_lagrange: tau by either road; tau_difference: the first minus the second.");
   const auto add = [&](const std::string& name, std::vector<std::string>& words, const std::string& help) {
     return command->add_option(name, words, help);
   };

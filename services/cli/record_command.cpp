@@ -165,10 +165,9 @@ void addRecordCommand(CLI::App& app, ExitCode& exit_code) {
   CLI::App* command = app.add_subcommand("record", "what the run's recorder does; or record any DDS traffic");
   command->require_subcommand(1);
   command->footer(
-      "The run goes on whatever is asked here. What is left out on purpose is told in the certificate, step by step, "
-      "and\n"
-      "makes no recording incomplete. Steps are those of plant_state; in JSON, \"step\" is the last one before what\n"
-      "was asked took effect.\n"
+      "The run goes on whatever is asked here. What is left out on purpose is told in the certificate, step by\n"
+      "step, and makes no recording incomplete. Steps are those of plant_state; in JSON, \"step\" is the last one\n"
+      "before what was asked took effect.\n"
       "Exit codes: 0 done; 1 refused, or the recorder has failed; 2 wrong input; 3 no run, no recorder, no answer,\n"
       "or the file is there already.");
   const auto arguments = std::make_shared<RecordArguments>();

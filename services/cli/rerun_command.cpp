@@ -85,8 +85,8 @@ void addRerunCommand(CLI::App& app, ExitCode& exit_code) {
       "Everything that was decided while the run went on is in the recording: handovers and parameters that operators\n"
       "asked for, controllers that were lost and came back, where it was stopped. These are repeated at their steps,\n"
       "with processes that live and without timers, and every payload of the loop is compared.\n"
-      "Exit codes: 0 identical, 1 they differ: it names what differs of what recorded the two, then the first step and "
-      "topic;\n130 interrupted.");
+      "Exit codes: 0 identical, 1 they differ: it names what differs of what recorded the two, then the first step\n"
+      "and topic; 130 interrupted.");
   addRecording(*command, request->recording, "recording",
                "recording of a run in lockstep (MCAP); several, or a folder of them: read as one");
   command->add_option("--out", request->run.out, "file to record to (default: kept only when it differs)");

@@ -47,10 +47,9 @@ void addShadowCommand(CLI::App& app, ExitCode& exit_code) {
   CLI::App* command =
       app.add_subcommand("shadow", "what each controller of a recorded run would have done, beside what was applied");
   command->footer(
-      "Of the steps in which a controller stood by: its effort minus what the joint felt over the same step, as rms "
-      "and\n"
-      "largest value; and as jump, the largest change against the step before that a handover without any help would\n"
-      "have made. A dash: it did not compute while it stood by.");
+      "Of the steps in which a controller stood by: its effort minus what the joint felt over the same step, as rms\n"
+      "and largest value; and as jump, the largest change against the step before that a handover without any help\n"
+      "would have made. A dash: it did not compute while it stood by.");
   addRecording(*command, request->recording);
   command->add_option("--out", request->out, "folder for a drawing of all efforts over time, SVG and PNG");
   command->add_flag("--json", request->json, "print JSON");

@@ -150,19 +150,18 @@ void addWhatIfCommand(CLI::App& app, ExitCode& exit_code) {
       app.add_subcommand("whatif", "what another law, or other values, would have commanded in a recorded run");
   command->footer(
       "The law is given at every step what the holder of the baton was given: state, contact, reference. The arm goes\n"
-      "where the recording says and does not feel the law, so an integrator of it may wind up; `baton branch` lets "
-      "the\n"
-      "arm go another way. It holds the baton from the first step to the last unless --as or --shadow say otherwise.\n"
+      "where the recording says and does not feel the law, so an integrator of it may wind up; `baton branch` lets\n"
+      "the arm go another way. It holds the baton from the first step to the last unless --as or --shadow say\n"
+      "otherwise.\n"
       "  baton whatif run.mcap --law joint_pd --set kp=40     the law with its defaults and what is set\n"
       "  baton whatif run.mcap --as impedance                 the controller as it was: reproduces its torque exactly\n"
       "  baton whatif run.mcap --as impedance --set kp=300    the same with another value; recorded changes of kp do\n"
       "                                                       not count, those of other parameters do\n"
       "  baton whatif run.mcap --law force_pi --as impedance  another law in its place, with its defaults\n"
       "Compared with what the holder commanded; while the brake held, with what the joints felt.\n"
-      "Exit codes: 0 done, whatever the difference; 2 no such law, value or controller, no contact for a law that "
-      "uses\n"
-      "force, no recording of a run, or one without a topic that is needed; 3 no such file, or one that cannot be\n"
-      "written.");
+      "Exit codes: 0 done, whatever the difference; 2 no such law, value or controller, no contact for a law that\n"
+      "uses force, no recording of a run, or one without a topic that is needed; 3 no such file, or one that cannot\n"
+      "be written.");
   addRecording(*command, request->recording);
   command->add_option("--law", request->wish.law, "the law (see `baton laws`)");
   command->add_option("--as", request->wish.as,

@@ -44,23 +44,18 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
   std::string passes;
   std::vector<std::string> remap;
   CLI::App app{
-      "Publishes a recording again: the recorded bytes, on the recorded topics, with their source timestamps, their "
-      "QoS\n"
-      "and in their rhythm. It speaks in the partition cell/run, so give both to whoever listens.\n"
-      "A recording that was cut or damaged is replayed as far as it can be read.\n"
+      "Publishes a recording again: the recorded bytes, on the recorded topics, with their source timestamps, their\n"
+      "QoS and in their rhythm. It speaks in the partition cell/run, so give both to whoever listens. A recording\n"
+      "that was cut or damaged is replayed as far as it can be read.\n"
       "On a terminal: space pauses and resumes; right: 1 s ahead, in a pause the next message; left: 1 s back;\n"
       "+ and - double and halve the rate; q ends it. From elsewhere: `baton player`."};
   app.footer(
       std::string(kRangeHelp) +
-      "A range that begins in the middle begins with what a late joiner would have been given there: of each writer of "
-      "a\n"
-      "transient-local topic the latest samples, as many as it keeps. A seek on the way sends nothing again.\n"
-      "Exit codes: 0 all was replayed, or as much as was asked for; 1 the recording is cut or damaged, or a topic "
-      "in\n"
-      "it cannot be replayed, and the rest was replayed, or a message was later than --max-late-us; 2 wrong input or "
-      "not a recording, 3 the file or DDS is "
-      "not\n"
-      "available, 130 interrupted.");
+      "A range that begins in the middle begins with what a late joiner would have been given there: of each writer\n"
+      "of a transient-local topic the latest samples, as many as it keeps. A seek on the way sends nothing again.\n"
+      "Exit codes: 0 all was replayed, or as much as was asked for; 1 the recording is cut or damaged, or a topic in\n"
+      "it cannot be replayed, and the rest was replayed, or a message was later than --max-late-us; 2 wrong input\n"
+      "or not a recording, 3 the file or DDS is not available, 130 interrupted.");
   addRecording(app, options.recording);
   addDomain(app, options.domain)->envname("BATON_DOMAIN");
   addCell(app, options.cell);

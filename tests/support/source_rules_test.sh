@@ -4,7 +4,7 @@ set -euo pipefail
 rules=$(dirname "$(readlink -f "$0")")/../source_rules
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
-mkdir -p "$tree"/common/{base,robot,control,trajectory,environment,messages,time,runtime} "$tree"/idl "$tree"/services/{plant,environment,trajectory,controller}
+mkdir -p "$tree"/common/{base,robot,control,trajectory,environment,messages,time,runtime} "$tree"/idl "$tree"/services/{plant,environment,trajectory,controller} "$tree"/tests
 
 : >"$tree/common/base/elementary.hpp"
 : >"$tree/common/control/law.hpp"
@@ -16,15 +16,20 @@ cat >"$tree/common/control/sound.cpp" <<'END'
 // sin(x) and std::pow(x, 2) in a comment
 double f(double x) { return baton::elementary::sin(x) + std::sqrt(x) + std::abs(x) + std::remainder(x, 2.0); }
 END
+cat >"$tree/services/plant/sound.cpp" <<'END'
+  print("a line that is put together of two "
+        "parts\n",
+        1);
+END
 "$rules" "$tree" || { echo "a sound tree is refused" && exit 1; }
 
-# expectBreach FILE LINE: one breach, in that file.
+# expectBreach FILE TEXT [LINE]: one breach, in that file, at its first line unless said.
 expectBreach() {
   local said
   mkdir -p "$(dirname "$tree/$1")"
   printf '%s\n' "$2" >"$tree/$1"
   if said=$("$rules" "$tree"); then echo "not found: $2" && exit 1; fi
-  [[ $(grep -c "^$1:1:" <<<"$said") == 1 ]] || { printf 'expected %s:1, found:\n%s\n' "$1" "$said" && exit 1; }
+  [[ $(grep -c "^$1:${3:-1}:" <<<"$said") == 1 ]] || { printf 'expected %s:%s, found:\n%s\n' "$1" "${3:-1}" "$said" && exit 1; }
   rm "$tree/$1"
 }
 expectBreach common/robot/x.hpp '#include <yaml-cpp/yaml.h>'
@@ -50,4 +55,5 @@ expectBreach services/plant/x.cpp '#include <fastdds/dds/domain/DomainParticipan
 expectBreach services/recorder/x.cpp 'const auto now = std::chrono::system_clock::now();'
 expectBreach services/plant/x.cpp 'std::printf("%s", name);'
 expectBreach common/runtime/x.cpp 'std::cerr << name;'
+expectBreach services/plant/x.cpp $'  "What is said here goes on "\n  "and\\n"\n  "ends."' 2
 echo "every breach is found"

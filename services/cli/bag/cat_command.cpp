@@ -56,12 +56,10 @@ void addBagCat(CLI::App& bag, ExitCode& exit_code) {
   command->footer(
       std::string(kRangeHelp) +
       "Messages are decoded with the IDL text that the recording carries; those of a topic without one are printed as\n"
-      "their bytes in hex, \"data\", beside the name of their type. Numbers read back as exactly what was recorded. "
-      "64-bit\n"
-      "integers are JSON integers with all their digits: read them with a reader that keeps more than 53 bits (Python "
-      "and\n"
-      "jq 1.7 do, JavaScript's JSON.parse does not). NaN, Infinity and -Infinity are strings, enums are their names,\n"
-      "octets in a sequence or an array are hex.\n"
+      "their bytes in hex, \"data\", beside the name of their type. Numbers read back as exactly what was recorded.\n"
+      "64-bit integers are JSON integers with all their digits: read them with a reader that keeps more than 53\n"
+      "bits (Python and jq 1.7 do, JavaScript's JSON.parse does not). NaN, Infinity and -Infinity are strings,\n"
+      "enums are their names, octets in a sequence or an array are hex.\n"
       "Exit codes: 0 all was printed, 1 some of it is cut, damaged or none of its type and the rest was printed,\n"
       "2 wrong input or not a recording, 3 cannot be opened or printed.");
   addTopicSelection(*command, request->selection);

@@ -150,13 +150,11 @@ void addBagCut(CLI::App& bag, ExitCode& exit_code) {
   CLI::App* command = bag.add_subcommand("cut", "a part of a recording: a time, some topics");
   command->footer(
       std::string(kRangeHelp) +
-      "A cut that begins in the middle begins with what a late joiner would have been given there: of each writer of "
-      "a\n"
-      "transient-local topic the latest samples, as many as it keeps (of each instance, where the keys are known), "
-      "with\n"
-      "the log time of the beginning. The metadata record baton.latched counts them, and `bag verify` does not.\n"
-      "Metadata and attachments are kept. The metadata record baton.cut says what was left out; such a file does not\n"
-      "claim to be complete, the certificate of the whole is kept under the name original_...\n"
+      "A cut that begins in the middle begins with what a late joiner would have been given there: of each writer\n"
+      "of a transient-local topic the latest samples, as many as it keeps (of each instance, where the keys are\n"
+      "known), with the log time of the beginning. The metadata record baton.latched counts them, and `bag verify`\n"
+      "does not. Metadata and attachments are kept. The metadata record baton.cut says what was left out; such a\n"
+      "file does not claim to be complete, the certificate of the whole is kept under the name original_...\n"
       "Exit codes: 0 done; 1 OUT could not be written, or a part is missing between the files; 2 wrong input,\n"
       "nothing to keep, damaged or not a recording (`bag recover` makes a sound one); 3 a file cannot be opened, or\n"
       "OUT is there already or cannot be made.");

@@ -129,19 +129,16 @@ void addBagDiff(CLI::App& bag, ExitCode& exit_code) {
   DiffRequest* request = &wish->request;
   CLI::App* command = bag.add_subcommand("diff", "whether two recordings are of the same, sample by sample");
   command->footer(
-      "Samples are paired by topic, service and step; by their order where messages have no step. Unless --topics "
-      "names\n"
-      "others, the topics of the control loop are compared: plant_state, contact, reference, joint_command and\n"
-      "shadow_command. Two runs of a scenario in lockstep are the same in these, while status, requests and events "
-      "tell\n"
-      "of processes and clocks. In recordings without any of them, all but *_status are compared.\n"
-      "Of a run that was reset only the last take is compared, as by `bag hash`, metrics, shadow, whatif and rerun;\n"
+      "Samples are paired by topic, service and step; by their order where messages have no step. Unless --topics\n"
+      "names others, the topics of the control loop are compared: plant_state, contact, reference, joint_command\n"
+      "and shadow_command. Two runs of a scenario in lockstep are the same in these, while status, requests and\n"
+      "events tell of processes and clocks. In recordings without any of them, all but *_status are compared. Of a\n"
+      "run that was reset only the last take is compared, as by `bag hash`, metrics, shadow, whatif and rerun;\n"
       "--all-takes compares the takes before it as well.\n"
-      "Without --tolerance and --ignore bytes are compared, with them values; with --tolerance members called *_hash "
-      "are\n"
-      "left out. A field is named without indices, as position or reference.position, and stands for all within it.\n"
-      "Memory: a chunk of each recording, those that overlap it in time, and the samples that wait for their "
-      "counterpart.\n"
+      "Without --tolerance and --ignore bytes are compared, with them values; with --tolerance members called\n"
+      "*_hash are left out. A field is named without indices, as position or reference.position, and stands for all\n"
+      "within it. Memory: a chunk of each recording, those that overlap it in time, and the samples that wait for\n"
+      "their counterpart.\n"
       "Exit codes: 0 the same, 1 different, 2 wrong input or not a recording, 3 cannot be opened.");
   command->add_option("a", wish->a, kOneRecordingText)->required();
   command->add_option("b", wish->b, "another one")->required();

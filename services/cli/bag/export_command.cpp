@@ -175,12 +175,10 @@ void addBagExport(CLI::App& bag, ExitCode& exit_code) {
       std::string(kRangeHelp) +
       "All writers of a topic share its file, in order of log time; the columns service and writer tell them apart.\n"
       "CSV (RFC 4180): a column for each number, string and enum, named as in the message with its unit behind it,\n"
-      "\"tip_position[0] [m]\"; sequences have as many columns as the longest in the recording, and cells are empty "
-      "where\n"
-      "a message has fewer. Booleans are 1 and 0, octets hex. JSON: the lines that `baton bag cat` prints.\n"
-      "Two passes over the recording, of which a chunk is held at a time, and those that overlap it in time. A file "
-      "has\n"
-      "its name only when it is complete.\n"
+      "\"tip_position[0] [m]\"; sequences have as many columns as the longest in the recording, and cells are empty\n"
+      "where a message has fewer. Booleans are 1 and 0, octets hex. JSON: the lines that `baton bag cat` prints.\n"
+      "Two passes over the recording, of which a chunk is held at a time, and those that overlap it in time. A file\n"
+      "has its name only when it is complete.\n"
       "Exit codes: 0 all was exported, 1 some of it is cut, damaged or none of its type and the rest was exported,\n"
       "2 wrong input or not a recording, 3 cannot be opened or written, or a file is there already.");
   addTopicSelection(*command, request->selection);

@@ -85,9 +85,8 @@ void addBagHash(CLI::App& bag, ExitCode& exit_code) {
       bag.add_subcommand("hash", "the hash of a recorded run, computed again from its payloads; two files: compared");
   command->footer(
       "It is made of the topics plant_state, contact and joint_command.\n"
-      "Exit codes: 0 the payloads give the hash that the run had, and the other file has the same; 1 otherwise, with "
-      "the\n"
-      "first step; 2 not the recording of a run, or one without a topic of these; 3 cannot be opened.");
+      "Exit codes: 0 the payloads give the hash that the run had, and the other file has the same; 1 otherwise,\n"
+      "with the first step; 2 not the recording of a run, or one without a topic of these; 3 cannot be opened.");
   command->add_option("file", request->recording, kOneRecordingText)->required();
   command->add_option("other", request->other, "another one, to compare step by step");
   addParts(*command, request->with_parts);

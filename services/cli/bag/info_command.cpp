@@ -251,9 +251,8 @@ void addBagInfo(CLI::App& bag, ExitCode& exit_code) {
   const auto request = std::make_shared<InfoRequest>();
   CLI::App* command = bag.add_subcommand("info", "what a recording is of, what is in it, and whether it is whole");
   command->footer(
-      "Reads the whole file, so that every checksum is checked and every gap is found. Gaps are counted per writer "
-      "where\n"
-      "the file says that its sequence numbers are a DDS writer's; `-` where they may be anything.\n"
+      "Reads the whole file, so that every checksum is checked and every gap is found. Gaps are counted per writer\n"
+      "where the file says that its sequence numbers are a DDS writer's; `-` where they may be anything.\n"
       "Exit codes: 0 complete, 1 incomplete or cut, 2 damaged or not a recording, 3 cannot be opened.");
   addRecording(*command, request->recording);
   command->add_flag("--json", request->json, "as a JSON object");

@@ -198,10 +198,9 @@ void addBagMerge(CLI::App& bag, ExitCode& exit_code) {
       "Each writer keeps a channel of its own; metadata and attachments of one name that differ get the name of their\n"
       "file in front. All parts of a recording that was split give the whole one, with its certificate; of anything\n"
       "else no certificate holds, and it is kept under the name original_...\n"
-      "Exit codes: 0 done; 1 OUT could not be written, or it is there and parts of a split recording are missing in "
-      "it;\n"
-      "2 damaged or not a recording (`bag recover` makes a sound one); 3 a file cannot be opened, or OUT is there "
-      "already or cannot be made.");
+      "Exit codes: 0 done; 1 OUT could not be written, or it is there and parts of a split recording are missing in\n"
+      "it; 2 damaged or not a recording (`bag recover` makes a sound one); 3 a file cannot be opened, or OUT is\n"
+      "there already or cannot be made.");
   command->add_option("files", request->given, "recordings (MCAP) or folders of them, and then the recording to make")
       ->required();
   addOverwrite(*command, request->out);

@@ -23,18 +23,14 @@ void printText(const Verification& found) {
   sayf("{}: {}\n", fmt::format("{}", fmt::join(found.files, ", ")), nameOf(found.verdict()));
   if (found.verdict() == RecordingVerdict::kComplete) {
     if (found.is_traffic) {
-      sayf(
-          "            as received: by the bytes no sample is missing between a writer's first and last. It is traffic "
-          "without\n");
-      sayf("            manifests, so what was sent before and after that is not known\n");
+      sayf("            as received: by the bytes no sample is missing between a writer's first and last. It is\n");
+      sayf("            traffic without manifests, so what was sent before and after that is not known\n");
     } else if (found.ledger.servicesHeard() > 0) {
       sayf("            proven from the bytes: {} services vouch for what they sent, all of it is here\n",
            found.ledger.servicesHeard());
     } else {
-      sayf(
-          "            by the bytes no sample is missing between a writer's first and last; the run went on when "
-          "this\n");
-      sayf("            ended, so nobody vouches for what was sent last\n");
+      sayf("            by the bytes no sample is missing between a writer's first and last; the run went on\n");
+      sayf("            when this ended, so nobody vouches for what was sent last\n");
     }
     sayf("            and the certificate in the file agrees; every checksum is right\n");
     if (found.summary != "complete") sayf("            by its certificate: {}\n", found.summary);
@@ -90,10 +86,9 @@ void addBagVerify(CLI::App& bag, ExitCode& exit_code) {
   const auto request = std::make_shared<VerifyRequest>();
   CLI::App* command = bag.add_subcommand("verify", "prove again, from its bytes, that a recording is complete");
   command->footer(
-      "Reads everything and checks every checksum; counts and hashes each writer's messages again, and compares them\n"
-      "with what the services say they sent and with the certificate in the file. What is lost of topics that are "
-      "none\n"
-      "of Baton's is a note (`remarks`): the verdict is on the run.\n"
+      "Reads everything and checks every checksum; counts and hashes each writer's messages again, and compares\n"
+      "them with what the services say they sent and with the certificate in the file. What is lost of topics that\n"
+      "are none of Baton's is a note (`remarks`): the verdict is on the run.\n"
       "Exit codes: 0 proven complete; 1 incomplete, cut or without a certificate; 2 damaged or not a recording;\n"
       "3 cannot be opened.");
   addRecording(*command, request->recording, "files",

@@ -14,9 +14,9 @@ static ExitCode run(int argc, char** argv) {
   std::vector<std::string> only;
   CLI::App app{
       "Measures the steps of the loop, as processes on DDS, beside the same messages on plain Fast DDS: p50 and p99,\n"
-      "with and without recorder and standby controllers, over UDP and shared memory, several cells at once, start-up "
-      "and\n"
-      "memory. The cases take turns, round after round. Exit code 0 when all was measured, whatever the figures."};
+      "with and without recorder and standby controllers, over UDP and shared memory, several cells at once,\n"
+      "start-up and memory. The cases take turns, round after round. Exit code 0 when all was measured, whatever\n"
+      "the figures."};
   app.name("baton bench");
   app.add_option("--rounds", plan.rounds, "how often every case is run")
       ->check(CLI::Range(1, 1000))

@@ -120,10 +120,9 @@ Json toJson(const std::vector<Climb>& climbs) {
 ExitCode run(int argc, char** argv) {
   RecorderPlan plan;
   CLI::App app{
-      "Measures the recorder as a process: foreign writers beside a run, at a steady rate and then at higher ones "
-      "until\n"
-      "something is lost, each message counted in the file; and how fast a run is whose recording is synced. Medians\n"
-      "over the rounds. Exit code 0 when all was measured, whatever the figures."};
+      "Measures the recorder as a process: foreign writers beside a run, at a steady rate and then at higher ones\n"
+      "until something is lost, each message counted in the file; and how fast a run is whose recording is synced.\n"
+      "Medians over the rounds. Exit code 0 when all was measured, whatever the figures."};
   app.name("baton bench recorder");
   app.add_option("--writers", plan.load.writers, "processes that publish")
       ->check(CLI::Range(1, 64))

@@ -12,11 +12,9 @@ static ExitCode run(int argc, char** argv) {
   double seconds = 20.0;
   bool as_json = false;
   CLI::App app{
-      "Starts cells of one robot, three controllers and no recorder, all at once in one DDS domain, paused before "
-      "their\n"
-      "first step, and tells what CPU time they take together and how soon another run starts beside them. Exit code "
-      "0\n"
-      "when all was measured, whatever the figures."};
+      "Starts cells of one robot, three controllers and no recorder, all at once in one DDS domain, paused before\n"
+      "their first step, and tells what CPU time they take together and how soon another run starts beside them.\n"
+      "Exit code 0 when all was measured, whatever the figures."};
   app.name("baton bench rest");
   app.add_option("--cells", cells, "how many")->check(CLI::Range(1, 20))->capture_default_str();
   app.add_option("--seconds", seconds, "how long they are watched at rest")
