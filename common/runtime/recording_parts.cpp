@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 #include <string>
+#include <system_error>
 
 #include "base/error.hpp"
 #include "mcap/lookup.hpp"
@@ -64,7 +65,8 @@ std::vector<fs::path> furtherPartsOf(const fs::path& recording) {
   return result;
 }
 
-fs::path claimRecording(const std::string& option, const std::string& out, bool is_split, bool overwrite) {
+fs::path claimRecording(const std::string& option, const std::string& out, bool is_split, bool overwrite,
+                        const std::vector<fs::path>& reads) {
   fs::path path = outputPath(out);
   if (fs::exists(path) && !fs::is_regular_file(path)) {
     throw UsageError(option + " " + out + ": expected a file, and it is a folder or a device");
@@ -78,6 +80,11 @@ fs::path claimRecording(const std::string& option, const std::string& out, bool 
                      why + ": choose another name");
   }
   if (fs::exists(path)) there.insert(there.begin(), path);
+  for (const fs::path& file : there) {
+    std::error_code none;  // not there: not the same
+    if (std::ranges::none_of(reads, [&](const fs::path& read) { return fs::equivalent(file, read, none); })) continue;
+    throw UsageError(option + " " + out + ": " + file.string() + " is what is read here: choose another name");
+  }
   if (!there.empty() && !overwrite) {
     throw UnavailableError(option + " " + there.front().string() +
                            " is there already: choose another name, or give --overwrite");

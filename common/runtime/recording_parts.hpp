@@ -15,9 +15,10 @@ namespace baton {
 
 /// The absolute path of a recording that is to be made where a person says. With `overwrite` what is there of an
 /// earlier one is removed: the file and, when it is to be split, its other parts. Throws, with the name of the option
-/// that gave the path, UsageError when it cannot be made or something else is in the way, and UnavailableError when it
-/// is there and may not be replaced.
+/// that gave the path, UsageError when it cannot be made, something else is in the way, or it is one of the files that
+/// are read meanwhile; and UnavailableError when it is there and may not be replaced.
 [[nodiscard]] std::filesystem::path claimRecording(const std::string& option, const std::string& out, bool is_split,
-                                                   bool overwrite);
+                                                   bool overwrite,
+                                                   const std::vector<std::filesystem::path>& reads = {});
 
 }  // namespace baton

@@ -173,9 +173,8 @@ void branch(const BranchRequest& request, ExitCode& exit_code) {
   const CheckpointSet set = checkpointAt(fork, folder, request.run);
 
   RunRequest run = request.run;
-  if (run.out.empty()) {
-    run.out = (folder / (scenario.name + ".mcap")).string();
-  }
+  run.reads = request.files.paths();
+  if (run.out.empty()) run.out = (folder / (scenario.name + ".mcap")).string();
   nlohmann::ordered_json result = runFrom(set, folder, text, original, run, exit_code);
   result["branch_of"] = fs::absolute(original.file.first()).string();
   result["branch_step"] = step;

@@ -61,6 +61,7 @@ void tellRerun(const RerunRequest& request, ExitCode& exit_code) {
   makeFolder(folder);
   const bool is_kept = !request.run.out.empty();
   RunRequest run = request.run;
+  run.reads = files.paths();
   if (!is_kept) run.out = (folder / "rerun.mcap").string();
   const Rerun made = rerunIn(folder, files, run);
   if (request.json) {

@@ -145,7 +145,10 @@ RunSession::RunSession(const RunRequest& request, bool attached) : signals_(std:
     throw UsageError("--record-later: the scenario keeps a ring (recording.ring_s), which has no beginning");
   }
   if (!request.out.empty()) {
-    info_.recording = claimRecording("--out", request.out, scenario.recording.isSplit(), request.overwrite).string();
+    std::vector<fs::path> reads = request.reads;
+    reads.insert(reads.end(), {info_.scenario, scenario.robot_file});
+    info_.recording =
+        claimRecording("--out", request.out, scenario.recording.isSplit(), request.overwrite, reads).string();
   }
   info_.folder = runFolder(info_.run).string();  // nothing is refused from here on
   makeKeyWhenMissing(info_);

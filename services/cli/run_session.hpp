@@ -1,11 +1,13 @@
 /// A run started from the command line: launches the supervisor, follows it, reads its result.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "dds/types.hpp"
@@ -23,8 +25,9 @@ struct RunRequest {
   dds::Transport transport = dds::Transport::kUdp;
   std::string out;  // recording; empty: in the run's folder
   bool no_recording = false;
-  bool record_later = false;  // the recorder waits for a request
-  bool overwrite = false;     // replace `out`
+  bool record_later = false;                   // the recorder waits for a request
+  bool overwrite = false;                      // replace `out`
+  std::vector<std::filesystem::path> reads{};  // besides scenario and robot: `out` is none of them
   int restarts = 0;
   std::string checkpoint;  // to go on from; empty: the scenario's start
   Scheduling scheduling;

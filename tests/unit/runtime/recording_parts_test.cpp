@@ -9,6 +9,7 @@
 #include <iterator>
 #include <string>
 
+#include "base/error.hpp"
 #include "mcap/reader.hpp"
 #include "mcap/writer.hpp"
 
@@ -86,6 +87,40 @@ TEST(RecordingParts, AreKnownThoughTheyAreDamaged) {
   (void)claimRecording("--out", (fs::path(pattern) / "run.mcap").string(), true, true);
   EXPECT_FALSE(fs::exists(part));
   fs::remove_all(pattern);
+}
+
+TEST(RecordingParts, OfWhatIsReadAreNeverReplaced) {
+  std::string pattern = (fs::temp_directory_path() / "baton-parts-XXXXXX").string();
+  ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+  const fs::path folder = pattern, recording = folder / "run.mcap", part = folder / "run_0001.mcap";
+  std::ofstream(recording) << "whole";
+  {
+    mcap::Writer writer(part);
+    writer.addMetadata("baton.part", {{"first", "run.mcap"}, {"index", "1"}});
+    writer.close();
+  }
+  fs::create_symlink(recording, folder / "by_link.mcap");
+  fs::create_hard_link(recording, folder / "twin.mcap");
+  const auto refusalOf = [&](const fs::path& out, bool is_split, const fs::path& read) -> std::string {
+    try {
+      (void)claimRecording("--out", out.string(), is_split, true, {folder / "not_there.yaml", read});
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const char* name : {"run.mcap", "by_link.mcap", "twin.mcap"}) {
+    EXPECT_NE(refusalOf(folder / name, false, recording).find("is what is read here: choose another name"),
+              std::string::npos)
+        << name;
+  }
+  EXPECT_NE(refusalOf(recording, true, part).find("run_0001.mcap is what is read here"), std::string::npos);
+  EXPECT_TRUE(fs::exists(recording));
+  EXPECT_TRUE(fs::exists(part));
+  EXPECT_EQ(refusalOf(recording, false, part), "") << "a part that is none of what is to be made stays";
+  EXPECT_FALSE(fs::exists(recording));
+  EXPECT_TRUE(fs::exists(part));
+  fs::remove_all(folder);
 }
 
 }  // namespace
