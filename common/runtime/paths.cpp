@@ -88,8 +88,8 @@ fs::path dataFolder() {
 
 namespace {
 constexpr const char* kNothing = "nothing";
+}
 
-/// "a folder", "nothing", or the system's reason; empty for a file.
 std::string whyNoFile(const fs::path& path) {
   std::error_code error;
   switch (fs::status(path, error).type()) {
@@ -100,6 +100,8 @@ std::string whyNoFile(const fs::path& path) {
     default: return "a device, a pipe or a socket";
   }
 }
+
+namespace {
 
 /// @param kind  "scenario": what is meant, and with an s the folder of those that come with Baton.
 fs::path findNamed(const std::string& kind, const std::string& name) {

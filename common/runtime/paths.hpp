@@ -35,6 +35,9 @@ namespace baton {
 /// Likewise a robot, in dataFolder()/robots.
 [[nodiscard]] std::filesystem::path findRobot(const std::string& name);
 
+/// Empty for a file; else what is there: "a folder", "nothing", "a device, a pipe or a socket", or the system's reason.
+[[nodiscard]] std::string whyNoFile(const std::filesystem::path& path);
+
 /// The absolute path of a file to be made, as a person names it with --out. Throws UsageError when its folder is not
 /// there.
 [[nodiscard]] std::filesystem::path outputPath(const std::string& out);

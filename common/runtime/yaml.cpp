@@ -7,8 +7,10 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
 #include "base/error.hpp"
 #include "base/number.hpp"
@@ -402,6 +404,11 @@ std::string shownNumber(double x) {
 }
 
 std::string readYamlFile(const std::string& path) {
+  // Of a pipe the first byte may never come.
+  std::error_code none;
+  if (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none)) {
+    throw UsageError(path + ": expected a file, found " + whyNoFile(path));
+  }
   int error = 0;
   std::string text = readFile(path, kMaxYamlBytes + 1, error);
   if (error != 0) throw UsageError(path + ": expected a file that can be read, found: " + std::strerror(error));

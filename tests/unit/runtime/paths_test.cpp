@@ -41,7 +41,7 @@ TEST_F(Paths, AFileThatCannotBeReadHasTheSystemsReason) {
   expectIn(refusal([&] { (void)readFile(folder / "none"); }), "none: No such file or directory");
   expectIn(refusal([&] { (void)readFile(folder); }), ": Is a directory");
   expectIn(refusal([&] { (void)readFile(folder / long_name); }), ": File name too long");
-  expectIn(refusal([&] { (void)readYamlFile(folder); }), "expected a file that can be read, found: Is a directory");
+  expectIn(refusal([&] { (void)readYamlFile(folder); }), ": expected a file, found a folder");
   EXPECT_EQ(lastLines(folder / "none.log", 3), "  cannot be read: No such file or directory\n");
 }
 

@@ -1,6 +1,7 @@
 #include "runtime/yaml.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -257,9 +258,26 @@ TEST(YamlMessage, ShowsForeignTextShortAndWithoutControlCharacters) {
 TEST(YamlFile, ThatCannotBeReadIsNamed) {
   EXPECT_EQ(refusal([] { return readYamlFile("no/such/file.yaml"); }),
             "no/such/file.yaml: expected a file that can be read, found: No such file or directory");
-  EXPECT_EQ(refusal([] { return readYamlFile("/"); }), "/: expected a file that can be read, found: Is a directory");
-  EXPECT_NE(refusal([] { return readYamlFile("/dev/zero"); }).find("expected a file of at most 1048576 bytes"),
+  EXPECT_EQ(refusal([] { return readYamlFile("/"); }), "/: expected a file, found a folder");
+  EXPECT_EQ(refusal([] { return readYamlFile("/dev/zero"); }),
+            "/dev/zero: expected a file, found a device, a pipe or a socket");
+}
+
+TEST(YamlFile, ThatIsAPipeIsNotWaitedFor) {
+  const std::string pipe = testing::TempDir() + "pipe_" + std::to_string(getpid());
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(refusal([&] { return readYamlFile(pipe); }),
+            pipe + ": expected a file, found a device, a pipe or a socket");
+  std::filesystem::remove(pipe);
+}
+
+TEST(YamlFile, ThatIsTooLargeIsNotReadToItsEnd) {
+  const std::string file = testing::TempDir() + "large_" + std::to_string(getpid());
+  std::ofstream(file).close();
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 40);
+  EXPECT_NE(refusal([&] { return readYamlFile(file); }).find("expected a file of at most 1048576 bytes"),
             std::string::npos);
+  std::filesystem::remove(file);
 }
 
 TEST(YamlFile, OfAnotherFormatIsToldWhatItIs) {
