@@ -40,7 +40,12 @@ int guarded(const std::string& name, const std::function<ExitCode()>& body) {
 int runGuarded(const std::string& name, const std::function<ExitCode()>& body) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a file at its limit is an error of a write, as on a full disk
-  return dds::leave(guarded(name, body));
+  int exit_code = guarded(name, body);
+  if (const std::string why = flushSaid(); !why.empty()) {
+    tell(name, "standard output cannot be written: " + why);
+    if (exit_code == 0) exit_code = static_cast<int>(ExitCode::kUnavailable);
+  }
+  return dds::leave(exit_code);
 }
 
 int runService(int argc, char** argv, const std::string& role, const std::function<ExitCode(Service&)>& body) {

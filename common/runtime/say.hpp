@@ -41,4 +41,11 @@ void sayf(fmt::format_string<Values...> format, const Values&... values) {
 /// One line on standard error.
 void sayWarning(std::string_view text);
 
+/// As it is, on standard output: for the text of a format that knows how to escape. Whether it could be written.
+[[nodiscard]] bool sayRaw(std::string_view text);
+
+/// Writes out what is still held back of standard output. Returns why what was printed has not all arrived, as "No
+/// space left on device"; nothing when it has, or when whoever reads it had enough.
+std::string flushSaid();
+
 }  // namespace baton

@@ -85,7 +85,7 @@ ExitCode demo(const RunRequest& request) {
   say("%s: %s\n%zu controllers, a wall, a trajectory, a plant and a recorder, each a process of its own, talk over "
       "DDS.\n\n",
       scenario.name.c_str(), scenario.description.c_str(), scenario.controllers.size());
-  std::fflush(stdout);
+  flushSaid();
   RunSession session(request, true);
   const ExitCode run_code = runToTheEnd(session);
   const nlohmann::ordered_json result = session.result();

@@ -1,17 +1,14 @@
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <memory>
 #include <string>
 
 #include "bag/message_text.hpp"
 #include "bag/selection.hpp"
 #include "bag/subcommands.hpp"
-#include "base/error.hpp"
 #include "runtime/command_line.hpp"
 #include "runtime/recorded_types.hpp"
+#include "runtime/say.hpp"
 
 namespace baton {
 namespace {
@@ -21,12 +18,6 @@ struct CatRequest {
   std::uint64_t limit = 0;  // 0: none
   bool raw = false;
 };
-
-/// Whether the text went out; false when whoever reads has had enough. Throws UnavailableError for any other reason.
-bool isTaken(bool went_out) {
-  if (went_out || errno == EPIPE) return went_out;
-  throw UnavailableError(std::string("standard output cannot be written: ") + std::strerror(errno));
-}
 
 ExitCode cat(const CatRequest& request) {
   SelectedMessages messages(request.selection);
@@ -42,9 +33,8 @@ ExitCode cat(const CatRequest& request) {
                         " is none of its type: " + problem);
     }
     line += '\n';
-    return isTaken(std::fwrite(line.data(), 1, line.size(), stdout) == line.size()) && ++printed != request.limit;
+    return sayRaw(line) && ++printed != request.limit;
   });
-  (void)isTaken(std::fflush(stdout) == 0);
   return messages.exitCode();
 }
 

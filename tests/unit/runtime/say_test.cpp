@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
+#include <cstdlib>
+#include <iostream>
 #include <stdexcept>
 
 #include "base/error.hpp"
@@ -47,6 +50,41 @@ TEST(Say, NobodysNameBeginsALine) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "baton: warning: " + shown + "\nbaton: topic " + shown +
                                                         " is not there; the end of the log:\n  one\n  two\n" +
                                                         "baton: unexpected: " + shown + "\n");
+}
+
+TEST(Say, WhatDoesNotArriveIsAFailure) {
+  const auto saying = [](const char* device, ExitCode code, std::size_t bytes) {
+    return [=] {
+      if (std::freopen(device, "w", stdout) == nullptr) std::exit(99);
+      std::exit(runGuarded("baton", [&] {
+        for (std::size_t i = 0; i < bytes; ++i) sayText("x");
+        return code;
+      }));
+    };
+  };
+  const char* const kWhy = "^baton: standard output cannot be written: No space left on device\n$";
+  for (const std::size_t bytes : {1, 100'000}) {
+    EXPECT_EXIT(saying("/dev/full", ExitCode::kOk, bytes)(), testing::ExitedWithCode(3), kWhy) << bytes;
+    EXPECT_EXIT(saying("/dev/full", ExitCode::kUsage, bytes)(), testing::ExitedWithCode(2), kWhy) << bytes;
+    EXPECT_EXIT(saying("/dev/null", ExitCode::kOk, bytes)(), testing::ExitedWithCode(0), "^$") << bytes;
+  }
+  EXPECT_EXIT(saying("/dev/full", ExitCode::kOk, 0)(), testing::ExitedWithCode(0), "^$") << "nothing was said";
+}
+
+TEST(Say, WhoeverReadsMayHaveEnough) {
+  const auto saying = [](bool by_cout) {
+    int pipe_ends[2];
+    if (pipe(pipe_ends) != 0) std::exit(99);
+    close(pipe_ends[0]);
+    dup2(pipe_ends[1], STDOUT_FILENO);
+    std::exit(runGuarded("baton", [&] {
+      const std::string text(100'000, 'x');
+      by_cout ? void(std::cout << text) : sayText(text);
+      return ExitCode::kOk;
+    }));
+  };
+  EXPECT_EXIT(saying(false), testing::ExitedWithCode(0), "^$");
+  EXPECT_EXIT(saying(true), testing::ExitedWithCode(0), "^$") << "as the text of --help goes";
 }
 
 TEST(Say, ALogDoesTheSame) {
