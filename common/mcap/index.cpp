@@ -239,8 +239,81 @@ ByteView readBody(const InputFile& file, const RecordPlace& place, const ReaderO
   return body;
 }
 
+namespace {
+
+/// The records of a summary.
+struct SummaryContents {
+  FileIndex index{};  // without a header
+  std::vector<Piece> pieces{};
+  std::vector<ChunkIndex> chunks{};
+  std::vector<SummaryOffset> offsets{};
+  Groups groups{};
+  bool has_statistics = false;
+};
+
+/// Throws FormatError where they cannot be read: what comes before is in `contents`.
+void decodeSummary(ByteView records, std::uint64_t begin, SummaryContents& contents) {
+  FileIndex& index = contents.index;
+  ByteReader in(records);
+  for (std::uint64_t at = begin; const std::optional<RecordView> record = nextRecord(in);) {
+    const std::uint64_t end = begin + in.position();
+    contents.groups.add(record->opcode, std::exchange(at, end), end);
+    switch (record->opcode) {
+      case Opcode::kSchema: {
+        Schema schema = decodeSchema(record->body);
+        index.schemas.emplace(schema.id, std::move(schema));
+        break;
+      }
+      case Opcode::kChannel: {
+        Channel channel = decodeChannel(record->body);
+        index.channels.emplace(channel.id, std::move(channel));
+        break;
+      }
+      case Opcode::kStatistics:
+        index.statistics = decodeStatistics(record->body);
+        contents.has_statistics = true;
+        break;
+      case Opcode::kChunkIndex: {
+        const ChunkIndex chunk = decodeChunkIndex(record->body);
+        Extent extent{.offset = chunk.chunk_offset,
+                      .length = chunk.chunk_length,
+                      .start_time_ns = chunk.start_time_ns,
+                      .end_time_ns = chunk.end_time_ns};
+        for (const auto& [id, offset] : chunk.message_index_offsets) extent.channels.push_back(id);
+        contents.pieces.push_back({.offset = extent.offset,
+                                   .length = extent.length,
+                                   .kind = Opcode::kChunk,
+                                   .indexes_length = chunk.message_index_length});
+        index.extents.push_back(std::move(extent));
+        contents.chunks.push_back(chunk);
+        break;
+      }
+      case Opcode::kAttachmentIndex:
+        index.attachments.push_back(decodeAttachmentIndex(record->body));
+        contents.pieces.push_back({.offset = index.attachments.back().offset,
+                                   .length = index.attachments.back().length,
+                                   .kind = Opcode::kAttachment});
+        break;
+      case Opcode::kMetadataIndex:
+        index.metadata.push_back(decodeMetadataIndex(record->body));
+        contents.pieces.push_back({.offset = index.metadata.back().offset,
+                                   .length = index.metadata.back().length,
+                                   .kind = Opcode::kMetadata});
+        break;
+      case Opcode::kSummaryOffset: contents.offsets.push_back(decodeSummaryOffset(record->body)); break;
+      case Opcode::kMessage:
+      case Opcode::kChunk:
+      case Opcode::kAttachment:
+      case Opcode::kMetadata: throw FormatError("it holds data: a record " + opcodeName(record->opcode));
+      default: break;
+    }
+  }
+}
+
+}  // namespace
+
 std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions& options, SummaryProblem& problem,
-                                     std::optional<Statistics>* claimed) {
+                                     SummaryClaims* claims) {
   if (file.size() < kMagic.size() + kTailBytes) return std::nullopt;
   const std::uint64_t footer_at = file.size() - kTailBytes;
   std::array<std::byte, kTailBytes> tail;
@@ -266,89 +339,42 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
     const std::span<std::byte> bytes = storage.resize(static_cast<std::size_t>(footer_at - footer.summary_start) +
                                                       kFooterBytes - sizeof(std::uint32_t));
     file.read(footer.summary_start, bytes);
-    if (options.check_crc && footer.summary_crc != 0 && crc32(bytes) != footer.summary_crc) {
-      throw FormatError("its CRC is wrong");
+    const bool is_sound = !options.check_crc || footer.summary_crc == 0 || crc32(bytes) == footer.summary_crc;
+    SummaryContents contents;
+    std::string unreadable;
+    try {
+      decodeSummary(bytes.first(static_cast<std::size_t>(footer_at - footer.summary_start)), footer.summary_start,
+                    contents);
+    } catch (const FormatError& error) {
+      unreadable = error.what();
     }
-
-    FileIndex index;
-    std::vector<Piece> pieces;
-    std::vector<ChunkIndex> chunks;
-    std::vector<SummaryOffset> offsets;
-    Groups groups;
-    bool has_statistics = false;
-    ByteReader in(bytes.first(static_cast<std::size_t>(footer_at - footer.summary_start)));
-    for (std::uint64_t at = footer.summary_start; const std::optional<RecordView> record = nextRecord(in);) {
-      const std::uint64_t end = footer.summary_start + in.position();
-      groups.add(record->opcode, std::exchange(at, end), end);
-      switch (record->opcode) {
-        case Opcode::kSchema: {
-          Schema schema = decodeSchema(record->body);
-          index.schemas.emplace(schema.id, std::move(schema));
-          break;
-        }
-        case Opcode::kChannel: {
-          Channel channel = decodeChannel(record->body);
-          index.channels.emplace(channel.id, std::move(channel));
-          break;
-        }
-        case Opcode::kStatistics:
-          index.statistics = decodeStatistics(record->body);
-          has_statistics = true;
-          if (claimed != nullptr) *claimed = index.statistics;
-          break;
-        case Opcode::kChunkIndex: {
-          const ChunkIndex chunk = decodeChunkIndex(record->body);
-          Extent extent{.offset = chunk.chunk_offset,
-                        .length = chunk.chunk_length,
-                        .start_time_ns = chunk.start_time_ns,
-                        .end_time_ns = chunk.end_time_ns};
-          for (const auto& [id, offset] : chunk.message_index_offsets) extent.channels.push_back(id);
-          pieces.push_back({.offset = extent.offset,
-                            .length = extent.length,
-                            .kind = Opcode::kChunk,
-                            .indexes_length = chunk.message_index_length});
-          index.extents.push_back(std::move(extent));
-          if (!options.trusts_summary) chunks.push_back(chunk);
-          break;
-        }
-        case Opcode::kAttachmentIndex:
-          index.attachments.push_back(decodeAttachmentIndex(record->body));
-          pieces.push_back({.offset = index.attachments.back().offset,
-                            .length = index.attachments.back().length,
-                            .kind = Opcode::kAttachment});
-          break;
-        case Opcode::kMetadataIndex:
-          index.metadata.push_back(decodeMetadataIndex(record->body));
-          pieces.push_back({.offset = index.metadata.back().offset,
-                            .length = index.metadata.back().length,
-                            .kind = Opcode::kMetadata});
-          break;
-        case Opcode::kSummaryOffset: offsets.push_back(decodeSummaryOffset(record->body)); break;
-        case Opcode::kMessage:
-        case Opcode::kChunk:
-        case Opcode::kAttachment:
-        case Opcode::kMetadata: throw FormatError("it holds data: a record " + opcodeName(record->opcode));
-        default: break;
-      }
+    FileIndex& index = contents.index;
+    if (claims != nullptr) {
+      if (contents.has_statistics) claims->statistics = index.statistics;
+      claims->declarations.schemas = index.schemas;
+      claims->declarations.channels = index.channels;
     }
+    if (!is_sound) throw FormatError("its CRC is wrong");
+    if (!unreadable.empty()) throw FormatError(unreadable);
     std::ranges::sort(index.extents, {}, &Extent::offset);
-    problem = inconsistency(index, has_statistics);
+    problem = inconsistency(index, contents.has_statistics);
     if (!problem.text.empty()) return std::nullopt;
 
     RecordWalk walk(file, kMagic.size(), footer.summary_start);
     const std::optional<RecordPlace> first = walk.next();
     if (!first || first->opcode != Opcode::kHeader) return std::nullopt;  // the scan says so
     index.info.header = decodeHeader(readBody(file, *first, options, storage));
-    if (!coversData(file, std::move(pieces), first->end(), footer.summary_start, problem)) return std::nullopt;
+    if (!coversData(file, std::move(contents.pieces), first->end(), footer.summary_start, problem)) return std::nullopt;
     // What is of use to others only is nothing to those who look at the metadata.
-    if (!options.trusts_summary) problem.text = groups.problem(offsets, footer.summary_offset_start);
-    for (auto one = chunks.begin(); one != chunks.end() && !options.trusts_summary && problem.text.empty(); ++one) {
+    if (!options.trusts_summary) problem.text = contents.groups.problem(contents.offsets, footer.summary_offset_start);
+    for (auto one = contents.chunks.begin();
+         one != contents.chunks.end() && !options.trusts_summary && problem.text.empty(); ++one) {
       problem.text = problemOf(file, *one);
     }
     if (!problem.text.empty()) return std::nullopt;
     index.info.file_bytes = index.info.complete_bytes = file.size();
     index.info.is_complete = index.info.has_all_data = index.info.has_summary = true;
-    return index;
+    return std::move(index);
   } catch (const FormatError& error) {
     problem = {std::string("its summary is damaged: ") + error.what()};
     return std::nullopt;
@@ -362,24 +388,24 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
     throw FormatError(file.path().string() + " is not an MCAP recording: " + whatBeginsWith(beginOf(file)));
   }
   SummaryProblem problem;
-  std::optional<Statistics> claimed;
-  std::optional<FileIndex> summary = readSummary(file, options, problem, &claimed);
+  SummaryClaims claims;
+  std::optional<FileIndex> summary = readSummary(file, options, problem, &claims);
   if (summary && options.trusts_summary) return *summary;
   if (summary) {
     // Read all of it: only then is it known that no chunk holds other messages than the summary says.
     std::vector<Damage> damage;
     ReaderOptions tolerant = options;
     tolerant.on_damage = [&damage](const Damage& found) { damage.push_back(found); };
-    FileIndex found = scanFile(file, tolerant, &*summary);
+    FileIndex found = scanFile(file, tolerant, &claims.declarations);
     if (options.on_damage) std::ranges::for_each(damage, options.on_damage);
     const auto lost =
         std::ranges::find_if(damage, [](const Damage& one) { return one.length == 0 && one.messages > 0; });
     problem.text = !found.info.is_complete ? "its data cannot be followed to their end: " + found.info.problem
                    : lost == damage.end()  ? contradictionOf(*summary, found, !damage.empty())
                                            : "its summary is not that of its data: " + describe(*lost);
-    found.info.claimed = claimed;
+    found.info.claimed = claims.statistics;
     if (problem.text.empty()) {
-      summary->info.claimed = claimed;
+      summary->info.claimed = claims.statistics;
       summary->info.unknown_records = found.info.unknown_records;
       return *std::move(summary);
     }
@@ -388,8 +414,8 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
       return found;
     }
   }
-  FileIndex index = scanFile(file, options, summary ? &*summary : nullptr);
-  index.info.claimed = std::move(claimed);
+  FileIndex index = scanFile(file, options, &claims.declarations);
+  index.info.claimed = claims.statistics;
   if (index.info.problem.empty()) {
     index.info.problem = problem.text;
     index.info.is_unindexed = problem.is_omission;

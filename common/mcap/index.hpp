@@ -108,12 +108,16 @@ struct SummaryProblem {
   bool is_omission = false;  // see FileInfo::is_unindexed
 };
 
+/// What a summary says, also when it is not used: it may be right in this and wrong in other things.
+struct SummaryClaims {
+  std::optional<Statistics> statistics{};
+  FileIndex declarations{};  // schemas and channels
+};
+
 /// The two ways, for indexFile: nothing when the file has no summary or one that cannot be used, `problem` says why.
-/// @param claimed  its statistics, also when it cannot be used.
 [[nodiscard]] std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions& options,
-                                                   SummaryProblem& problem,
-                                                   std::optional<Statistics>* claimed = nullptr);
-/// @param summary  declares the channels that the data do not declare; may be null.
+                                                   SummaryProblem& problem, SummaryClaims* claims = nullptr);
+/// @param summary  declares the channels that the data do not declare before they are used; may be null.
 [[nodiscard]] FileIndex scanFile(const InputFile& file, const ReaderOptions& options,
                                  const FileIndex* summary = nullptr);
 

@@ -88,18 +88,20 @@ TEST_F(SalvageTest, AMessageOfAnUndeclaredChannelCostsItselfAlone) {
   for (const bool is_cut : {true, false}) {
     damage.clear();
     saveFile(path, is_cut ? file.cut() : file.finished());
-    EXPECT_EQ(logTimesOf(Reader(path, tolerant())), (std::vector<std::uint64_t>{2, 3, 5, 7}));
-    ASSERT_EQ(damage.size(), 2U);
+    // A summary declares what is declared in any chunk.
+    const std::vector<std::uint64_t> by_chunks{2, 3, 5, 7}, by_summary{2, 3, 5, 6, 7};
+    EXPECT_EQ(logTimesOf(Reader(path, tolerant())), is_cut ? by_chunks : by_summary);
+    ASSERT_EQ(damage.size(), is_cut ? 2U : 1U);
     EXPECT_EQ(damage[0].messages, 2U) << describe(damage[0]);
     EXPECT_NE(describe(damage[0]).find("2 messages in the chunk at byte"), std::string::npos) << describe(damage[0]);
-    EXPECT_EQ(damage[1].messages, 1U);
-    EXPECT_EQ(damage[0].length + damage[1].length, 0U) << "their bytes could be read";
+    EXPECT_EQ(damage.back().messages, is_cut ? 1U : 2U);
+    for (const Damage& one : damage) EXPECT_EQ(one.length, 0U) << "its bytes could be read";
     EXPECT_THROW(Reader{path}, FormatError);
     RecoverOptions options;
     options.writer.if_exists = OutputFile::IfExists::kReplace;
     const Recovery found = recover(path, folder.file("out.mcap"), options);
-    EXPECT_EQ(found.messages, 4U);
-    EXPECT_EQ(found.lost.size(), is_cut ? 3U : 2U);
+    EXPECT_EQ(found.messages, is_cut ? 4U : 5U);
+    EXPECT_EQ(found.lost.size(), is_cut ? 3U : 1U);
     EXPECT_TRUE(found.info.contradictions.empty()) << found.info.contradictions.front();
   }
 }
@@ -253,6 +255,50 @@ TEST_F(SalvageTest, ASummaryDeclaresWhatADamagedChunkDeclared) {
   bytes[file.chunks[0].chunk_offset + file.chunks[0].chunk_length - 1] ^= std::byte{1};
   saveFile(path, bytes);
   EXPECT_EQ(logTimesOf(Reader(path, tolerant())), std::vector<std::uint64_t>{2});
+}
+
+TEST_F(SalvageTest, ASummaryDeclaresThoughItIsNotUsed) {
+  struct Harm {
+    const char* what;
+    std::function<void(Bytes&, const IndexedFile&, std::size_t statistics_at)> apply;
+  };
+  const std::vector<Harm> harms{
+      {"opcode of the first chunk",
+       [](Bytes& bytes, const IndexedFile& f, std::size_t) { bytes[f.chunks[0].chunk_offset] ^= std::byte{1}; }},
+      {"length of the first chunk",
+       [](Bytes& bytes, const IndexedFile& f, std::size_t) { bytes[f.chunks[0].chunk_offset + 1] ^= std::byte{8}; }},
+      {"times of the first chunk",
+       [](Bytes& bytes, const IndexedFile& f, std::size_t) { bytes[f.chunks[0].chunk_offset + 9] ^= std::byte{64}; }},
+      {"plain size of the first chunk",
+       [](Bytes& bytes, const IndexedFile& f, std::size_t) { bytes[f.chunks[0].chunk_offset + 25] ^= std::byte{1}; }},
+      {"statistics",
+       [](Bytes& bytes, const IndexedFile& f, std::size_t statistics_at) {
+         bytes[statistics_at] = std::byte{0x7f};
+         bytes[f.chunks[0].chunk_offset + f.chunks[0].chunk_length - 1] ^= std::byte{1};
+       }},
+      {"summary's CRC",
+       [](Bytes& bytes, const IndexedFile& f, std::size_t) {
+         bytes[bytes.size() - kMagic.size() - 1] = std::byte{1};
+         bytes[f.chunks[0].chunk_offset + f.chunks[0].chunk_length - 1] ^= std::byte{1};
+       }},
+  };
+  for (const Harm& harm : harms) {
+    IndexedFile file;
+    file.channel(channelOf(1, "a"));
+    for (std::uint64_t time = 1; time <= 3; ++time) {
+      file.message(1, time);
+      file.closeChunk();
+    }
+    std::size_t statistics_at = 0;
+    file.change_offsets = [&](SummaryOffset& offset, Footer&) { statistics_at = offset.group_start; };
+    Bytes bytes = file.finished();
+    harm.apply(bytes, file, statistics_at);
+    saveFile(path, bytes);
+    damage.clear();
+    const std::vector<std::uint64_t> times = logTimesOf(Reader(path, tolerant()));
+    EXPECT_EQ(std::vector<std::uint64_t>(times.end() - 2, times.end()), (std::vector<std::uint64_t>{2, 3}))
+        << harm.what;
+  }
 }
 
 TEST_F(SalvageTest, DeclarationsCountWhateverFollowsThem) {
