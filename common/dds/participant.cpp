@@ -16,6 +16,7 @@
 #include "base/text.hpp"
 #include "dds/environment.hpp"
 #include "dds/fastdds.hpp"
+#include "dds/gated_transport.hpp"
 #include "dds/hash.hpp"
 #include "dds/interfaces.hpp"
 #include "dds/lossy_transport.hpp"
@@ -161,17 +162,20 @@ GuidPrefix toPrefix(const rtps::GUID_t& guid) { return prefixOf(toGuid(guid)); }
 
 void say(const std::string& data, DomainParticipantQos& qos) { qos.user_data().data_vec({data.begin(), data.end()}); }
 
-DomainParticipantQos participantQos(const ParticipantOptions& options) {
+DomainParticipantQos participantQos(const ParticipantOptions& options, const std::shared_ptr<Gate>& gate) {
   DomainParticipantQos qos = DomainParticipantFactory::get_instance()->get_default_participant_qos();
   qos.name(options.service);
 
   qos.transport().use_builtin_transports = false;
   const std::uint64_t one_in = loseOneIn();
+  const auto use = [&](std::shared_ptr<transport::TransportDescriptorInterface> one) {
+    qos.transport().user_transports.push_back(gate ? gated(gate, std::move(one)) : std::move(one));
+  };
   const auto udp = udpOn(options.addresses);
-  qos.transport().user_transports.push_back(one_in > 0 ? losing(one_in, udp) : udp);
+  use(one_in > 0 ? losing(one_in, udp) : udp);
   discoverIn(options, options.addresses.empty() ? addressesOfAll() : options.addresses, qos);
   if (options.transport == Transport::kSharedMemory) {
-    qos.transport().user_transports.push_back(std::make_shared<transport::SharedMemTransportDescriptor>());
+    use(std::make_shared<transport::SharedMemTransportDescriptor>());
   }
 
   auto& discovery = qos.wire_protocol().builtin.discovery_config;
@@ -208,8 +212,11 @@ Guid toGuid(const rtps::GUID_t& guid) {
   return result;
 }
 
-Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_in)
-    : on_peer(std::move(on_peer_in)), key(options.key), clock(options.clock) {
+Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_in, Gate::Tell on_trespass)
+    : on_peer(std::move(on_peer_in)),
+      key(options.key),
+      gate(key ? std::make_shared<Gate>(*key, options.strangers, std::move(on_trespass)) : nullptr),
+      clock(options.clock) {
   if (options.domain < 0 || options.domain > kMaxDomain) {
     throw UsageError("DDS domain: expected 0 to 232, found " + std::to_string(options.domain));
   }
@@ -230,7 +237,7 @@ Participant::Impl::Impl(const ParticipantOptions& options, PeerCallback on_peer_
     }
     say(encodePeer(self), qos);
   };
-  participant = fastdds::createParticipant(options.domain, participantQos(options), this, introduce);
+  participant = fastdds::createParticipant(options.domain, participantQos(options, gate), this, introduce);
   if (participant == nullptr) refuse("a participant in domain " + std::to_string(options.domain));
   PublisherQos publisher_qos = participant->get_default_publisher_qos();
   SubscriberQos subscriber_qos = participant->get_default_subscriber_qos();
@@ -322,6 +329,10 @@ void Participant::Impl::onWriter(const fastdds::PublicationData& data) {
 Topic* Participant::Impl::topic(const std::string& name, const std::string& type, std::uint32_t max_payload,
                                 bool keyed) {
   const std::lock_guard lock(mutex);
+  if (is_keyed.try_emplace(type, keyed).first->second != keyed) {
+    const auto with = [](bool has_key) { return has_key ? "with a key" : "without a key"; };
+    throw UsageError("topic " + name + ": expected type " + type + ' ' + with(!keyed) + ", found it " + with(keyed));
+  }
   if (auto* description = participant->lookup_topicdescription(name)) {
     if (description->get_type_name() != type) {
       throw UsageError("topic " + name + ": expected type " + description->get_type_name() + ", found " + type);
@@ -329,14 +340,14 @@ Topic* Participant::Impl::topic(const std::string& name, const std::string& type
     return static_cast<Topic*>(description);
   }
   TypeSupport support(new RawType(type, max_payload, keyed));
-  support.register_type(participant);
+  support.register_type(participant);  // says no to the second of a name, which is the same
   Topic* created = participant->create_topic(name, type, participant->get_default_topic_qos());
   if (created == nullptr) refuse("topic " + name);
   return created;
 }
 
-Participant::Participant(const ParticipantOptions& options, PeerCallback on_peer)
-    : impl_(std::make_unique<Impl>(options, std::move(on_peer))) {}
+Participant::Participant(const ParticipantOptions& options, PeerCallback on_peer, Gate::Tell on_trespass)
+    : impl_(std::make_unique<Impl>(options, std::move(on_peer), std::move(on_trespass))) {}
 
 Participant::~Participant() = default;
 
@@ -366,6 +377,8 @@ std::optional<Role> Participant::roleOf(const GuidPrefix& prefix) const {
   }
   return impl_->key->roleOf(prefix);
 }
+
+std::uint64_t Participant::turnedAway() const { return impl_->gate ? impl_->gate->turnedAway() : 0; }
 
 bool Participant::isMember(const GuidPrefix& prefix) const { return !impl_->key || roleOf(prefix).has_value(); }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dds/gate.hpp"
 #include "dds/interfaces.hpp"
 #include "dds/run_key.hpp"
 #include "dds/types.hpp"
@@ -28,8 +29,9 @@ struct ParticipantOptions {
   std::string service;  // name of the service, unique in the run
   Role role = Role::kOperator;
   Transport transport = Transport::kUdp;
-  std::optional<RunKey> key{};  // of the run; without one, everybody is taken for who they say they are
-  WallClock clock{};            // of the run: what is sent has its time stamps
+  std::optional<RunKey> key{};  // of the run; without one, everybody is heard and taken for who they say they are
+  Strangers strangers = Strangers::kAsk;  // where there is a key
+  WallClock clock{};                      // of the run: what is sent has its time stamps
 };
 
 /// A process of Baton in the domain, as its discovery data tell.
@@ -75,8 +77,9 @@ using WriterCallback = std::function<void(const DiscoveredWriter&)>;
 class Participant {
  public:
   /// @param on_peer  called for every Baton process that joins, strangers too.
+  /// @param on_trespass  called for what is turned away.
   /// Throws UsageError for a domain outside 0 to 232 and UnavailableError when no interface is up or DDS refuses.
-  explicit Participant(const ParticipantOptions& options, PeerCallback on_peer = {});
+  explicit Participant(const ParticipantOptions& options, PeerCallback on_peer = {}, Gate::Tell on_trespass = {});
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
@@ -95,6 +98,8 @@ class Participant {
   [[nodiscard]] std::optional<Role> roleOf(const GuidPrefix& prefix) const;
   /// Whether it is of our run. Everybody is, where we have no key.
   [[nodiscard]] bool isMember(const GuidPrefix& prefix) const;
+  /// RTPS messages of strangers that DDS was not given.
+  [[nodiscard]] std::uint64_t turnedAway() const;
   /// Its process has ended without a farewell.
   void bury(const GuidPrefix& prefix);
   /// A member that has left or was buried, as it was.

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 
@@ -12,7 +13,7 @@
 namespace baton::dds {
 
 struct Participant::Impl final : fastdds::DiscoveryListener {
-  Impl(const ParticipantOptions& options, PeerCallback on_peer_in);
+  Impl(const ParticipantOptions& options, PeerCallback on_peer_in, Gate::Tell on_trespass);
   ~Impl() override;
 
   void onParticipant(const fastdds::ParticipantData& data) override;
@@ -23,11 +24,13 @@ struct Participant::Impl final : fastdds::DiscoveryListener {
   /// Takes a participant away; of a member it is remembered. Under `mutex`.
   void forget(const GuidPrefix& prefix);
 
-  /// The topic of this name and type, created on first use and shared by readers and writers.
+  /// The topic of this name and type, created on first use and shared by readers and writers. Throws UsageError when
+  /// the name is another type's, or the type is there with a key and is wanted without, or the other way round.
   fastdds::dds::Topic* topic(const std::string& name, const std::string& type, std::uint32_t max_payload, bool keyed);
 
   PeerCallback on_peer;
   std::optional<RunKey> key;
+  std::shared_ptr<Gate> gate;  // where there is a key
   const WallClock clock;
   Peer self;
   std::uint64_t announcements = 0;
@@ -40,6 +43,7 @@ struct Participant::Impl final : fastdds::DiscoveryListener {
   std::map<GuidPrefix, Peer> strangers;  // some of them
   std::map<GuidPrefix, Peer> departed;   // members that have left
   std::map<Guid, DiscoveredWriter> writers;
+  std::map<std::string, bool> is_keyed;  // by type
   std::mutex watch_mutex;  // held while on_writer is called, so that it can be taken away; never taken after `mutex`
   WriterCallback on_writer;
 };

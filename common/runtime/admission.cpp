@@ -1,5 +1,7 @@
 #include "runtime/admission.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -17,6 +19,24 @@ const char* soleWriter(dds::WrittenBy who) {
     case dds::WrittenBy::kTrajectory: return kTrajectoryName;
     default: return "";
   }
+}
+
+std::string claimOf(const dds::Participant& participant, const dds::GuidPrefix& stranger) {
+  const auto claim = participant.stranger(stranger);
+  return claim ? " and calls itself " + claim->service : "";
+}
+
+std::string hasNoKey(const dds::GuidPrefix& stranger) {
+  return ": participant " + dds::toString(stranger) + " has not the run's key and is not heard";
+}
+
+/// Baton's, of which it has writers, as far as discovery has told: "contact, reference".
+std::string topicsOf(const dds::Participant& participant, const dds::GuidPrefix& stranger) {
+  std::set<std::string> topics;
+  for (const dds::DiscoveredWriter& writer : participant.writers()) {
+    if (dds::prefixOf(writer.guid) == stranger && dds::topics::called(writer.topic)) topics.insert(writer.topic);
+  }
+  return fmt::format("{}", fmt::join(topics, ", "));
 }
 
 }  // namespace
@@ -41,27 +61,27 @@ bool Admission::admits(const dds::TopicFacts& topic, const dds::Guid& writer) {
   if (!participant_.hasKey()) return true;
   const auto role = participant_.roleOf(prefix);
   if (!role) {
-    const std::string text = "a stranger writes on " + std::string(topic.name);
-    const std::string name = ": participant " + dds::toString(prefix);
-    if (const auto departed = participant_.departed(prefix)) {
-      tellOnce(prefix, text + " under the GUID of " + departed->service + name +
-                           " has left, or its process cannot be seen from here, and is not heard");
-    } else {
-      const auto claim = participant_.stranger(prefix);
-      tellOnce(prefix, text + (claim ? " and calls itself " + claim->service : "") + name +
-                           " has not the run's key and is not heard");
-    }
+    tellOnce(Deed::kSpeaks, prefix, [&] {
+      const std::string text = "a stranger writes on " + std::string(topic.name);
+      const auto departed = participant_.departed(prefix);
+      if (!departed) return text + claimOf(participant_, prefix) + hasNoKey(prefix);
+      return text + " under the GUID of " + departed->service + ": participant " + dds::toString(prefix) +
+             " has left, or its process cannot be seen from here, and is not heard";
+    });
     return false;
   }
   const auto peer = participant_.peer(prefix);
   // Nobody watches commands, and one may have been killed.
   if (role == dds::Role::kOperator && peer && !isRunning(*peer)) {
-    tellOnce(prefix, peer->service + " asks for something on " + topic.name + ", but its process has ended");
+    tellOnce(Deed::kSpeaks, prefix,
+             [&] { return peer->service + " asks for something on " + topic.name + ", but its process has ended"; });
     return false;
   }
   if (mayWrite(topic.written_by, *role)) return true;
-  tellOnce(prefix, (peer ? peer->service : dds::toString(prefix)) + " writes on " + topic.name +
-                       ", which is not its topic, and is not heard there");
+  tellOnce(Deed::kSpeaks, prefix, [&] {
+    return (peer ? peer->service : dds::toString(prefix)) + " writes on " + topic.name +
+           ", which is not its topic, and is not heard there";
+  });
   return false;
 }
 
@@ -87,18 +107,38 @@ bool Admission::speaksFor(const dds::Guid& writer, std::string_view service) con
 }
 
 void Admission::met(const dds::Peer& stranger) {
-  const std::string claim = stranger.service.empty() ? " bears the mark of this run and does not say who it is"
-                                                     : " calls itself " + stranger.service + " of run " + stranger.run;
-  tellOnce(stranger.prefix, "a stranger" + claim + ": participant " + dds::toString(stranger.prefix) +
-                                " has not the run's key and is not heard");
+  tellOnce(Deed::kIsThere, stranger.prefix, [&] {
+    return "a stranger" +
+           (stranger.service.empty() ? " bears the mark of this run and does not say who it is"
+                                     : " calls itself " + stranger.service + " of run " + stranger.run) +
+           hasNoKey(stranger.prefix);
+  });
 }
 
-void Admission::tellOnce(const dds::GuidPrefix& prefix, const std::string& text) {
+void Admission::turnedAway(const dds::GuidPrefix& stranger, dds::Trespass what) {
+  if (what == dds::Trespass::kAsksTooMuch) {
+    return tellOnce(Deed::kAsks, stranger, [&] {
+      return "a stranger" + claimOf(participant_, stranger) + " asks for samples again and again: participant " +
+             dds::toString(stranger) + " and others without the run's key are sent no more than " +
+             std::to_string(dds::Gate::kAsksPerSecond) + " a second";
+    });
+  }
+  tellOnce(Deed::kSpeaks, stranger, [&] {
+    const std::string topics = topicsOf(participant_, stranger);
+    return "a stranger writes" + (topics.empty() ? "" : " on " + topics) + claimOf(participant_, stranger) +
+           hasNoKey(stranger);
+  });
+}
+
+void Admission::tellOnce(Deed deed, const dds::GuidPrefix& prefix, const std::function<std::string()>& text) {
+  bool is_last = false;
   {
     const std::lock_guard lock(mutex_);
-    if (told_.size() >= kMaxStrangersTold || !told_.insert(prefix).second) return;
+    std::set<dds::GuidPrefix>& told = told_[deed];
+    if (told.size() >= kMaxStrangersTold || !told.insert(prefix).second) return;
+    is_last = told.size() == kMaxStrangersTold;
   }
-  tell_(text);
+  tell_(text() + (is_last ? "; who does the same from now on is not named" : ""));
 }
 
 }  // namespace baton

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <set>
 #include <string>
@@ -15,7 +16,7 @@
 
 namespace baton {
 
-/// How many an event is written of: a flood of them must not flood the recording.
+/// How many an event is written of, for each thing that they do: a flood of them must not flood the recording.
 inline constexpr std::size_t kMaxStrangersTold = 20;
 
 /// "trajectory sent reference of step 601, which cannot be used: its position is not finite"; empty for a topic that
@@ -30,7 +31,7 @@ inline constexpr std::size_t kMaxStrangersTold = 20;
 
 class Admission {
  public:
-  /// Called once for each stranger, on a DDS thread, with a sentence that names it.
+  /// Called once for each stranger and thing that it does, on the thread that asks, with a sentence that names it.
   using Tell = std::function<void(const std::string& text)>;
 
   /// @param is_open  whether requests are taken from anybody.
@@ -46,15 +47,18 @@ class Admission {
   [[nodiscard]] bool speaksFor(const dds::Guid& writer, std::string_view service) const;
   /// It is there and says that it is of our run.
   void met(const dds::Peer& stranger);
+  /// The participant's gate has turned it away.
+  void turnedAway(const dds::GuidPrefix& stranger, dds::Trespass what);
 
  private:
-  void tellOnce(const dds::GuidPrefix& prefix, const std::string& text);
+  enum class Deed { kIsThere, kSpeaks, kAsks };
+  void tellOnce(Deed deed, const dds::GuidPrefix& prefix, const std::function<std::string()>& text);
 
   const dds::Participant& participant_;
   bool is_open_;
   Tell tell_;
   std::mutex mutex_;
-  std::set<dds::GuidPrefix> told_;
+  std::map<Deed, std::set<dds::GuidPrefix>> told_;
 };
 
 }  // namespace baton

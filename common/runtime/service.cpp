@@ -54,7 +54,10 @@ Service::Service(ServiceOptions options, Scenario scenario)
       scenario_(std::move(scenario)),
       // A peer's discovery data may come after its endpoints are matched.
       participant_(options_.participant(),
-                   [this](const dds::Peer& peer) { asio::post(executor_, [this, peer] { peerJoined(peer); }); }),
+                   [this](const dds::Peer& peer) { asio::post(executor_, [this, peer] { peerJoined(peer); }); },
+                   [this](const dds::GuidPrefix& stranger, dds::Trespass what) {
+                     asio::post(executor_, [this, stranger, what] { admission_.turnedAway(stranger, what); });
+                   }),
       admission_(participant_, options_.is_open,
                  [this](const std::string& text) { event(msg::SEVERITY_WARNING, "stranger", text); }) {
   for (const int number : endingSignals()) signals_.add(number);
@@ -321,6 +324,9 @@ void Service::handleLater(const dds::Guid& asker, std::chrono::nanoseconds pause
 void Service::tellLosses() {
   for (const auto& loss : losses_) {
     if (const std::string text = loss(); !text.empty()) spdlog::warn("{}", text);
+  }
+  if (const std::uint64_t count = participant_.turnedAway(); count > 0) {
+    spdlog::warn("{} messages of strangers were turned away", count);
   }
 }
 

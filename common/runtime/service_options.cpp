@@ -18,6 +18,7 @@ dds::ParticipantOptions ServiceOptions::participant() const {
           .role = roleCalled(name),
           .transport = transport,
           .key = key_file.empty() ? std::nullopt : std::optional(readKey(key_file)),
+          .strangers = is_open ? dds::Strangers::kSpeakFreely : dds::Strangers::kAsk,
           .clock = clock};
 }
 
