@@ -23,7 +23,7 @@ std::string qosYaml(const dds::DiscoveredWriter& writer) {
 TopicReaders::TopicReaders(dds::Participant& participant, boost::asio::io_context& executor, ReadingRules rules,
                            Sink sink)
     : participant_(participant), executor_(executor), rules_(std::move(rules)), sink_(std::move(sink)) {
-  places_.push_back({&participant_});
+  places_.push_back({.participant = &participant_, .takes_foreign = !rules_.keeps_foreign_apart});
 }
 
 TopicReaders::~TopicReaders() {
@@ -65,7 +65,7 @@ bool TopicReaders::hasPlace() {
 }
 
 bool TopicReaders::noteWriter(const dds::DiscoveredWriter& writer) {
-  const std::optional<dds::Peer> peer = participant_.peer(dds::prefixOf(writer.guid));
+  const std::optional<dds::Peer> peer = participant_.member(dds::prefixOf(writer.guid));
   const bool is_foreign = dds::isForeignTopic(writer.topic);
   const std::lock_guard lock(facts_mutex_);
   if (!is_foreign || (rules_.selection.takes_foreign && found_.size() < kMaxFound)) found_.insert(writer.topic);
@@ -89,6 +89,12 @@ void TopicReaders::writerFound(const dds::DiscoveredWriter& writer) {
                                      .exclusive_ownership = writer.exclusive_ownership,
                                      .best_effort = !writer.reliable,
                                      .any_encoding = true};
+  dds::Participant* participant = nullptr;
+  try {
+    participant = &participantFor(writer);
+  } catch (const Error& error) {
+    return cannotRead(writer, error);
+  }
   const std::lock_guard lock(topics_mutex_);
   const auto known =
       std::find_if(topics_.begin(), topics_.end(), [&](const auto& topic) { return topic->options == options; });
@@ -105,7 +111,7 @@ void TopicReaders::writerFound(const dds::DiscoveredWriter& writer) {
   topic->options = options;
   try {
     topic->reader = std::make_unique<dds::RawReader>(
-        participantFor(writer.topic, writer.type), options,
+        *participant, options,
         [this, index, is_foreign = dds::isForeignTopic(writer.topic)](const dds::RawSample& sample) {
           if (dds::prefixOf(sample.writer) == participant_.self().prefix || !isFor(index, sample.writer)) return;
           if (is_foreign && !isNoted(sample.writer)) return;
@@ -116,20 +122,35 @@ void TopicReaders::writerFound(const dds::DiscoveredWriter& writer) {
         },
         rules_.filter_for(writer.topic));
   } catch (const Error& error) {
-    refuse(writer.topic, "a writer cannot be recorded: " + std::string(error.what()));
-    return rules_.on_unreadable(error.what());
+    return cannotRead(writer, error);
   }
   topics_.push_back(std::move(topic));
 }
 
-dds::Participant& TopicReaders::participantFor(const std::string& topic, const std::string& type) {
-  for (Place& place : places_) {
-    if (place.types.try_emplace(topic, type).first->second == type) return *place.participant;
+void TopicReaders::cannotRead(const dds::DiscoveredWriter& writer, const Error& error) {
+  refuse(writer.topic, "a writer cannot be recorded: " + std::string(error.what()));
+  rules_.on_unreadable(error.what());
+}
+
+bool TopicReaders::Place::takes(const dds::DiscoveredWriter& writer) const {
+  if (!takes_foreign && dds::isForeignTopic(writer.topic)) return false;
+  const auto type = types.find(writer.topic);
+  const auto keyed = is_keyed.find(writer.type);
+  return (type == types.end() || type->second == writer.type) &&
+         (keyed == is_keyed.end() || keyed->second == writer.keyed);
+}
+
+/// One that has no room for it says what is the matter.
+dds::Participant& TopicReaders::participantFor(const dds::DiscoveredWriter& writer) {
+  auto place = std::ranges::find_if(places_, [&](const Place& one) { return one.takes(writer); });
+  if (place == places_.end()) {
+    if (places_.size() == rules_.max_participants) return *places_.back().participant;
+    more_.push_back(rules_.another());
+    place = places_.insert(place, {.participant = more_.back().get()});
   }
-  if (!rules_.another) return participant_;  // it says what is the matter
-  more_.push_back(rules_.another());
-  places_.push_back({more_.back().get(), {{topic, type}}});
-  return *more_.back();
+  place->types.emplace(writer.topic, writer.type);
+  place->is_keyed.emplace(writer.type, writer.keyed);
+  return *place->participant;
 }
 
 bool TopicReaders::isFor(std::uint32_t topic, const dds::Guid& writer) {
@@ -165,7 +186,7 @@ TopicReaders::Writer TopicReaders::of(std::uint32_t topic, const dds::Guid& writ
   if (std::string& service = result.metadata["service"]; service.empty()) {
     // Its endpoints may have been known before the process was.
     const dds::GuidPrefix prefix = dds::prefixOf(writer);
-    const auto peer = participant_.peer(prefix), departed = participant_.departed(prefix);
+    const auto peer = participant_.member(prefix), departed = participant_.departed(prefix);
     if (peer || departed) service = (peer ? peer : departed)->service;
   }
   result.metadata["type"] = result.type;

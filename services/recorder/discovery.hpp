@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "dds/endpoint.hpp"
 #include "mcap/records.hpp"
 #include "topic_selection.hpp"
@@ -36,10 +37,14 @@ struct ReadingRules {
   std::function<void()> on_match{};
   /// A writer cannot be read, in a sentence. On the executor.
   std::function<void(const std::string& text)> on_unreadable;
-  /// Another participant like the first: one has room for one type under the name of a topic. Empty: there is none, and
-  /// writers of a second type are unreadable.
-  std::function<std::unique_ptr<dds::Participant>()> another{};
-  /// So many writers of foreign topics, those that are none of Baton's, are read; each costs a channel and memory.
+  /// Another participant, like the first but for whom it hears: one has room for one type under the name of a topic,
+  /// and for a type with a key or without.
+  std::function<std::unique_ptr<dds::Participant>()> another;
+  /// So many in all; writers for which there is no room in them are unreadable.
+  std::size_t max_participants = 8;
+  /// Foreign topics, those that are none of Baton's, are not read with the first one.
+  bool keeps_foreign_apart = false;
+  /// So many writers of foreign topics are read; each costs a channel and memory.
   std::size_t max_foreign_writers = std::numeric_limits<std::size_t>::max();
 };
 
@@ -94,7 +99,11 @@ class TopicReaders {
   };
   struct Place {
     dds::Participant* participant = nullptr;
+    bool takes_foreign = true;
     std::map<std::string, std::string> types{};  // by topic
+    std::map<std::string, bool> is_keyed{};      // by type
+
+    [[nodiscard]] bool takes(const dds::DiscoveredWriter& writer) const;
   };
   struct Note {
     std::int64_t found_ns = 0;
@@ -105,7 +114,8 @@ class TopicReaders {
   [[nodiscard]] bool noteWriter(const dds::DiscoveredWriter& writer);
   [[nodiscard]] bool hasPlace();
   void writerFound(const dds::DiscoveredWriter& writer);
-  [[nodiscard]] dds::Participant& participantFor(const std::string& topic, const std::string& type);
+  void cannotRead(const dds::DiscoveredWriter& writer, const Error& error);
+  [[nodiscard]] dds::Participant& participantFor(const dds::DiscoveredWriter& writer);
   [[nodiscard]] bool isFor(std::uint32_t topic, const dds::Guid& writer);
   [[nodiscard]] bool isNoted(const dds::Guid& writer) const;
 

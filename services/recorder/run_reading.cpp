@@ -46,6 +46,19 @@ std::vector<std::string> awaitedFrom(const dds::TopicFacts& topic, const Scenari
   return {};
 }
 
+/// A guest in its own run, without the key and of no name in the cell: it hears everybody.
+dds::ParticipantOptions guestOf(const ServiceOptions& options) {
+  const dds::ParticipantOptions member = options.participant();
+  return {.domain = member.domain,
+          .partition = member.partition,
+          .cell = "",
+          .other_cells = {member.cell},
+          .run = "",
+          .service = "recorder-of-foreign-topics",
+          .transport = member.transport,
+          .clock = member.clock};
+}
+
 }  // namespace
 
 ReadingRules rulesOfRun(Service& service) {
@@ -53,6 +66,9 @@ ReadingRules rulesOfRun(Service& service) {
   const Scenario& scenario = service.scenario();
   ReadingRules rules;
   rules.max_foreign_writers = kMaxForeignWriters;
+  rules.another = [&service] { return std::make_unique<dds::Participant>(guestOf(service.options())); };
+  rules.max_participants = 2;
+  rules.keeps_foreign_apart = true;
   rules.selection = {scenario.recording.topics, scenario.recording.except, scenario.recording.takes_foreign};
   for (const dds::TopicFacts& topic : dds::topics::kAll) {
     if (!awaitedFrom(topic, scenario).empty()) rules.awaited.insert(topic.name);
