@@ -16,8 +16,9 @@ constexpr std::uint64_t kDatagramBytes = 1280;
 /// The receive buffer that Baton's processes ask for, and get where the kernel's limit is not lower.
 constexpr std::uint64_t kSocketBuffer = 4 << 20;
 constexpr int kLook_ms = 100;
-constexpr std::int64_t kTellAfter_ns = 5'000'000'000;   // of waiting for a reader to acknowledge
-constexpr std::int64_t kDeafAfter_ns = 30'000'000'000;  // longer than discovery takes to notice a death
+constexpr std::int64_t kTellAfter_ns = 5'000'000'000;      // of waiting for a reader to acknowledge
+constexpr std::int64_t kDeafAfter_ns = 30'000'000'000;     // longer than discovery takes to notice a death
+constexpr std::int64_t kNextDeafAfter_ns = 3'000'000'000;  // once there was one: most likely they are the same process
 
 /// How much may be on its way before readers must acknowledge. What overflows a reader's socket is lost, and a reader
 /// keeps too few samples to wait long for one to be sent again.
@@ -52,7 +53,7 @@ bool Outlet::write(const mcap::MessageView& message) {
 }
 
 std::vector<std::string> Outlet::problems() const {
-  std::vector<std::string> all = problems_;
+  std::vector<std::string> all;
   for (const auto& [id, line] : lines_) {
     if (line.refused == 0) continue;
     all.push_back("topic " + line.topic + ": DDS refused " + std::to_string(line.refused) +
@@ -67,15 +68,15 @@ void Outlet::spareReaders(bool is_hurried) {
 }
 
 void Outlet::waitForAcknowledgments() {
+  const std::int64_t since_ns = steadyNow(), limit_ns = deaf_.empty() ? kDeafAfter_ns : kNextDeafAfter_ns;
+  bool has_told = false;
   for (auto& [id, line] : lines_) {
-    const std::int64_t since_ns = steadyNow();
-    bool has_told = false;
     while (!line.is_deaf && !line.writer.waitForAcknowledgments(kLook_ms)) {
       if (!keep_waiting_()) return;
       const std::int64_t waited_ns = steadyNow() - since_ns;
-      if (waited_ns > kDeafAfter_ns) {
-        problems_.push_back("a reader of " + line.topic + " does not acknowledge: it is no longer waited for");
-        spdlog::warn("{}", problems_.back());
+      if (waited_ns > limit_ns) {
+        deaf_.push_back("a reader of " + line.topic + " does not acknowledge: it is no longer waited for");
+        spdlog::warn("{}", deaf_.back());
         line.is_deaf = true;
       } else if (waited_ns > kTellAfter_ns && !has_told) {
         has_told = true;

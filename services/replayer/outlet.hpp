@@ -27,8 +27,8 @@ class Outlet {
   /// Waits now and then for readers that are slower than a replay in a hurry: they would lose messages. At the recorded
   /// rate they keep up as those of the original did, and waiting for them would cost the rhythm.
   void spareReaders(bool is_hurried);
-  /// Waits until the readers have everything. One that was killed is waited for until discovery gives it up; one that
-  /// lives and does not acknowledge, not for ever.
+  /// Waits until the readers have everything. One that was killed is waited for until discovery gives it up; those that
+  /// live and do not acknowledge, all together not for long.
   void waitForAcknowledgments();
 
   [[nodiscard]] Readers readers() const;
@@ -36,8 +36,10 @@ class Outlet {
   [[nodiscard]] std::size_t writers() const { return lines_.size(); }
   /// Channels without a writer, and why.
   [[nodiscard]] const std::map<mcap::ChannelId, std::string>& refused() const { return refused_; }
-  /// Readers that are no longer waited for, and messages that DDS refused.
+  /// Messages that DDS refused.
   [[nodiscard]] std::vector<std::string> problems() const;
+  /// Readers that are no longer waited for: anybody may be one.
+  [[nodiscard]] const std::vector<std::string>& deaf() const { return deaf_; }
 
  private:
   struct Line {
@@ -56,7 +58,7 @@ class Outlet {
   std::map<mcap::ChannelId, std::string> refused_;
   std::uint64_t window_;         // bytes that may be on their way
   std::uint64_t in_flight_ = 0;  // since the last acknowledgment
-  std::vector<std::string> problems_;
+  std::vector<std::string> deaf_;
 };
 
 }  // namespace baton

@@ -32,7 +32,8 @@ dds::ParticipantOptions participantOptions(const ReplayOptions& options, const d
                                 .service = kReplayerName,
                                 .role = dds::Role::kReplayer,
                                 .transport = options.transport,
-                                .key = key};
+                                .key = key,
+                                .strangers = dds::Strangers::kAskFreely};  // a replay is for them
   if (options.partition) place.other_partitions.push_back(*options.partition);
   for (const RunInfo& active : activeRuns()) {
     if (active.domain != options.domain) continue;
@@ -201,6 +202,9 @@ void Replayer::finish() {
   result_.recorded_s = static_cast<double>(playback_.playedTime()) * 1e-9;
   result_.problems = playlist_.problems();
   for (std::string& problem : outlet_.problems()) result_.problems.push_back(std::move(problem));
+  const bool expects_readers = options_.wait_for > 0 || !options_.wait_for_readers.empty();
+  auto& told = expects_readers ? result_.problems : result_.notes;
+  told.insert(told.end(), outlet_.deaf().begin(), outlet_.deaf().end());
   const double max_late_us = static_cast<double>(result_.lateness_ns.max()) * 1e-3;
   if (options_.max_late_us && max_late_us > *options_.max_late_us) {
     result_.problems.push_back(fmt::format("a message went out {:.1f} us late, where --max-late-us allows {:.1f}",

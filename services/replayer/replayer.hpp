@@ -40,6 +40,7 @@ struct ReplayResult {
   Histogram lateness_ns;              // behind the deadline when DDS had the message; of those that had one
   std::uint64_t overdue = 0;          // later than asked for
   std::vector<std::string> problems;  // what of the recording could not be replayed as it was, and why
+  std::vector<std::string> notes;     // of readers nobody asked for
 };
 
 /// 0, or 1 when there were problems, or 130.

@@ -36,6 +36,7 @@ std::string summaryText(const ReplayResult& result, const ReplayOptions& options
                       result.recorded_s, messagesPerSecond(result));
   if (result.lateness_ns.count() > 0) text += latenessText(result, options);
   for (const std::string& problem : result.problems) text += "problem      " + escaped(problem) + "\n";
+  for (const std::string& note : result.notes) text += "note         " + escaped(note) + "\n";
   text.pop_back();
   return text;
 }
@@ -59,7 +60,8 @@ std::string jsonText(const ReplayResult& result, const ReplayOptions& options) {
                               {"lateness_us", nullptr},
                               {"overdue", nullptr},
                               {"overdue_us", options.overdue_us},
-                              {"problems", result.problems}};
+                              {"problems", result.problems},
+                              {"notes", result.notes}};
   if (options.rate > 0.0) json["rate"] = options.rate;
   if (const Histogram& lateness = result.lateness_ns; lateness.count() > 0) {
     json["lateness_us"] = {{"p50", inMicroseconds(lateness.quantile(0.5))},
