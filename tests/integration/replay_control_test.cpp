@@ -4,8 +4,10 @@
 #include <signal.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <future>
 #include <mutex>
 #include <numeric>
 
@@ -305,6 +307,53 @@ TEST_F(ReplayControl, ATopicThatCannotBeReplayedIsLeftOutAndTheOthersAreReplayed
   const Finished none = bench_.baton(chosen);
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_NE(none.err.find("expected one type, found One and Another"), std::string::npos) << none.err;
+}
+
+/// It takes its first message, and from then on acknowledges none: the thread that would stands there.
+class DeafListener {
+ public:
+  DeafListener(const Bench& bench, const std::string& service)
+      : participant_({.domain = bench.domain(),
+                      .partition = "replay/test",
+                      .cell = "replay",
+                      .run = "test",
+                      .service = service}) {
+    const std::shared_future<void> over = over_.get_future().share();
+    for (const char* topic : {"numbers", "tens"}) {
+      readers_.push_back(std::make_unique<dds::RawReader>(
+          participant_, dds::EndpointOptions{.topic = topic, .type = "baton::test::Number"},
+          [over](const dds::RawSample&) { over.wait(); }));
+    }
+  }
+  ~DeafListener() { over_.set_value(); }
+  [[nodiscard]] bool isMatched() const {
+    return eventually(
+        [&] { return std::ranges::all_of(readers_, [](const auto& one) { return !one->matched().empty(); }); });
+  }
+
+ private:
+  std::promise<void> over_;
+  dds::Participant participant_;
+  std::vector<std::unique_ptr<dds::RawReader>> readers_;
+};
+
+/// Anybody may read a replay and be stopped.
+TEST_F(ReplayControl, AReaderNobodyAskedForIsWaitedForOnceAndCostsNoVerdict) {
+  const DeafListener deaf(bench_, "deaf");
+  start({writeNumbers(bench_, 20), "--paused"});
+  ASSERT_TRUE(deaf.isMatched());
+  player({"resume"});
+  EXPECT_EQ(bench_.wait(pid_), 0);
+  const std::string said = readFile(bench_.folder() / "replay.log");
+  for (const char* topic : {"numbers", "tens"}) {
+    EXPECT_NE(said.find("a reader of " + std::string(topic) + " does not acknowledge"), std::string::npos) << said;
+  }
+}
+
+TEST_F(ReplayControl, AReaderThatWasAskedForHasToAcknowledge) {
+  const DeafListener deaf(bench_, "deaf");
+  start({writeNumbers(bench_, 20), "--wait-for-readers", "deaf"});
+  EXPECT_EQ(bench_.wait(pid_), 1);
 }
 
 TEST_F(ReplayControl, AChangeOfRateTakesEffect) {

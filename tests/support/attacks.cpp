@@ -1,10 +1,15 @@
 #include "support/attacks.hpp"
 
 #include <array>
+#include <cstdint>
 #include <limits>
+#include <random>
+#include <vector>
 
 namespace baton::test {
 namespace {
+
+constexpr bool kAsks = true;
 
 template <class Topic, class Fill>
 auto saying(const Topic& topic, const Fill& fill) {
@@ -112,7 +117,8 @@ const Attack kAttacks[] = {
        command.controller(holder);
        command.effort({10.0, 10.0, 10.0});
        stranger.say(dds::topics::kJointCommand, command);
-     }},
+     },
+     kWritesOn, kAsks},
     {"environment_failed", "environment",
      saying(dds::topics::kServiceStatus,
             [](State, Run run) {
@@ -183,7 +189,7 @@ const Attack kAttacks[] = {
               plan.hard(true);
               return plan;
             })},
-    {"swap_ack", "force",
+    {"swap_ack", "impedance",
      saying(dds::topics::kSwapAck,
             [](State, Run) {
               msg::SwapAck ack;
@@ -201,12 +207,14 @@ const Attack kAttacks[] = {
               request.target("pd");
               request.force(true);
               return request;
-            })},
-    {"sim_stop", "operator-1", saying(dds::topics::kSimRequest, [](State, Run) { return simRequest(msg::SIM_STOP); })},
-    {"sim_pause", "supervisor",
-     saying(dds::topics::kSimRequest, [](State, Run) { return simRequest(msg::SIM_PAUSE); })},
-    {"sim_reset", "operator-1",
-     saying(dds::topics::kSimRequest, [](State, Run) { return simRequest(msg::SIM_RESET); })},
+            }),
+     kWritesOn, kAsks},
+    {"sim_stop", "operator-1", saying(dds::topics::kSimRequest, [](State, Run) { return simRequest(msg::SIM_STOP); }),
+     kWritesOn, kAsks},
+    {"sim_pause", "supervisor", saying(dds::topics::kSimRequest, [](State, Run) { return simRequest(msg::SIM_PAUSE); }),
+     kWritesOn, kAsks},
+    {"sim_reset", "operator-1", saying(dds::topics::kSimRequest, [](State, Run) { return simRequest(msg::SIM_RESET); }),
+     kWritesOn, kAsks},
     {"launch_stop", "operator-1",
      saying(dds::topics::kLaunchRequest,
             [](State, Run) {
@@ -215,15 +223,21 @@ const Attack kAttacks[] = {
               request.action(msg::LAUNCH_STOP);
               request.name("pd");
               return request;
-            })},
+            }),
+     kWritesOn, kAsks},
     {"parameters", "operator-1",
      saying(dds::topics::kParameterRequest,
             [](State state, Run) {
               msg::ParameterRequest request;
               request.request_id(state.step() + 1);
-              request.controller("tracking");
+              request.controller("impedance");
+              msg::ParameterValue stiffer;
+              stiffer.name("kp");
+              stiffer.numbers({500.0});
+              request.values({stiffer});
               return request;
-            })},
+            }),
+     kWritesOn, kAsks},
     {"record_start", "operator-1",
      saying(dds::topics::kRecordRequest,
             [](State, Run run) {
@@ -232,7 +246,8 @@ const Attack kAttacks[] = {
               request.action(msg::RECORD_START);
               request.path((run.bench.folder() / "authorized_keys").string());
               return request;
-            })},
+            }),
+     kWritesOn, kAsks},
     {"record_stop", "operator-1",
      saying(dds::topics::kRecordRequest,
             [](State, Run) {
@@ -240,7 +255,8 @@ const Attack kAttacks[] = {
               request.request_id(1);
               request.action(msg::RECORD_STOP);
               return request;
-            })},
+            }),
+     kWritesOn, kAsks},
     {"manifest", "environment",
      saying(dds::topics::kServiceManifest,
             [](State, Run) {
@@ -260,7 +276,8 @@ const Attack kAttacks[] = {
     {"every_topic", "meter",
      [](Stranger& stranger, State state, Run) {
        dds::topics::forEach([&](const auto& topic) { stranger.say(topic, timely(topic, state)); });
-     }},
+     },
+     kWritesOn, kAsks},
     {"contact_flood", "environment",
      [](Stranger& stranger, State state, Run) {
        for (int i = 0; i < 5; ++i) stranger.say(dds::topics::kContact, contactAt(state.step() + 1, 50.0));
@@ -270,7 +287,54 @@ const Attack kAttacks[] = {
     {"control_characters", "beacon",
      [](Stranger& stranger, State, Run) {
        stranger.sayRaw("\nssh-ed25519 AAAA\n", "somebody::Else", std::array<std::byte, 8>{});
+     },
+     "control characters in the name"},
+    {"truncated", "tracking",
+     [](Stranger& stranger, State, Run) {
+       stranger.sayBytes(dds::topics::kJointCommand, std::array{std::byte{0}, std::byte{1}, std::byte{0}});
      }},
+    {"garbage", "trajectory",
+     [](Stranger& stranger, State state, Run) {
+       std::mt19937_64 random(state.step());
+       std::vector<std::byte> payload(random() % 500);
+       for (std::byte& one : payload) one = static_cast<std::byte>(random());
+       stranger.sayBytes(dds::topics::kReference, payload);
+     }},
+    {"huge", "tracking",
+     [](Stranger& stranger, State state, Run) {
+       if (state.step() % 200 == 0) stranger.sayBytes(dds::topics::kJointCommand, std::vector<std::byte>(4 << 20));
+     }},
+    {"from_the_future", "tracking",
+     [](Stranger& stranger, State state, Run) {
+       constexpr std::int64_t kIn2060_ns = 2'840'000'000'000'000'000;
+       msg::JointCommand command;
+       command.step(state.step());
+       std::vector<std::byte> room(dds::maxPayload<msg::JointCommand>());
+       stranger.sayBytes(dds::topics::kJointCommand, dds::encode(command, std::span(room)), kIn2060_ns);
+     }},
+    {"exclusive", "environment",
+     [](Stranger& stranger, State, Run) {
+       stranger.sayWith({.topic = "contact",
+                         .type = dds::topics::kContact.type,
+                         .exclusive_ownership = true,
+                         .ownership_strength = 4'000'000'000U},
+                        std::array<std::byte, 8>{});
+     }},
+    {"keyed", "environment",
+     [](Stranger& stranger, State, Run) {
+       stranger.sayWith({.topic = "contact", .type = dds::topics::kContact.type, .keyed = true},
+                        std::array<std::byte, 8>{});
+     }},
+    {"refusing_readers", "viewer",
+     [](Stranger& stranger, State, Run) { stranger.refuseAll(dds::topics::kPlantState, 50); },
+     "asks for samples again and again"},
+    {"user_data", "chatterbox", [](Stranger& stranger, State, Run) { stranger.participant().announce(); },
+     "calls itself chatterbox"},
+    {"flood_of_its_own", "camera",
+     [](Stranger& stranger, State, Run) {
+       stranger.sayRaw("their_picture", "somebody::Picture", std::vector<std::byte>(60'000));
+     },
+     "calls itself camera"},
 };
 
 }  // namespace

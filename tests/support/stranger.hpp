@@ -4,24 +4,33 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "dds/fastdds.hpp"
+#include "dds/participant_impl.hpp"
+#include "dds/qos.hpp"
 #include "dds/typed.hpp"
+#include "runtime/service_options.hpp"
 
 namespace baton::test {
 
 class Stranger {
  public:
   /// @param claims  the service that it says it is.  @param place  of which run it is in the partition; "*": of all.
-  Stranger(int domain, const std::string& run, const std::string& claims, const std::string& place = "")
+  /// @param key  of the run: with it this is no stranger, and shows what would come of what it says.
+  Stranger(int domain, const std::string& run, const std::string& claims, const std::string& place = "",
+           const std::optional<dds::RunKey>& key = {})
       : participant_({.domain = domain,
                       .partition = "lab/" + (place.empty() ? run : place),
                       .cell = "lab",
                       .run = run,
-                      .service = claims}) {}
+                      .service = claims,
+                      .role = roleCalled(claims),
+                      .key = key}) {}
 
   /// On a writer that is made when it is first used: what comes before it is matched is heard by nobody.
   template <class T>
@@ -31,7 +40,30 @@ class Stranger {
     speaks_baton_ = true;
   }
   void sayRaw(const std::string& topic, const std::string& type, std::span<const std::byte> payload) {
-    write({.topic = topic, .type = type, .profile = dds::Profile::kLoop}, payload);
+    sayWith({.topic = topic, .type = type, .profile = dds::Profile::kLoop}, payload);
+  }
+  void sayWith(const dds::EndpointOptions& options, std::span<const std::byte> payload) { write(options, payload); }
+  /// Bytes in place of a message, with a time stamp of its own choice.
+  void sayBytes(const dds::TopicFacts& topic, std::span<const std::byte> payload,
+                std::optional<std::int64_t> source_timestamp_ns = {}) {
+    write({.topic = topic.name, .type = topic.type, .profile = topic.profile, .max_payload = 1 << 20}, payload,
+          source_timestamp_ns);
+    speaks_baton_ = true;
+  }
+  /// Readers of a topic that have room for one sample and never take it: they ask for what they have no room for as
+  /// often as the writer asks them.
+  void refuseAll(const dds::TopicFacts& topic, std::size_t readers) {
+    using namespace fastdds::dds;
+    dds::Participant::Impl& dds = participant_.impl();
+    Topic* const shared = dds.topic(topic.name, topic.type, 1024, false);
+    DataReaderQos qos = dds.subscriber->get_default_datareader_qos();
+    dds::applyProfile(topic.profile, qos);
+    qos.history().kind = KEEP_ALL_HISTORY_QOS;
+    qos.resource_limits().max_samples = 1;
+    qos.resource_limits().max_instances = 1;
+    qos.resource_limits().max_samples_per_instance = 1;
+    qos.resource_limits().allocated_samples = 1;
+    while (refusing_++ < readers) dds.subscriber->create_datareader(shared, qos);
   }
   /// The services that read what it says there.
   [[nodiscard]] std::set<std::string> readersOf(const std::string& topic) const {
@@ -55,16 +87,18 @@ class Stranger {
   [[nodiscard]] dds::Participant& participant() { return participant_; }
 
  private:
-  void write(const dds::EndpointOptions& options, std::span<const std::byte> payload) {
+  void write(const dds::EndpointOptions& options, std::span<const std::byte> payload,
+             std::optional<std::int64_t> source_timestamp_ns = {}) {
     auto& writer = writers_[options.topic];
     if (!writer) writer = std::make_unique<dds::RawWriter>(participant_, options);
     // An attack that DDS refuses is none: the tests see by its effects whether it was one.
-    static_cast<void>(writer->write(payload));
+    static_cast<void>(source_timestamp_ns ? writer->write(payload, *source_timestamp_ns) : writer->write(payload));
   }
 
   dds::Participant participant_;
   std::map<std::string, std::unique_ptr<dds::RawWriter>> writers_;
   bool speaks_baton_ = false;
+  std::size_t refusing_ = 0;
 };
 
 }  // namespace baton::test
