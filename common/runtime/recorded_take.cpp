@@ -1,7 +1,13 @@
 #include "runtime/recorded_take.hpp"
 
-#include <map>
+#include <spdlog/fmt/fmt.h>
 
+#include <map>
+#include <set>
+#include <string>
+
+#include "base/error.hpp"
+#include "mcap/lookup.hpp"
 #include "runtime/recorded_extras.hpp"
 #include "runtime/recorded_messages.hpp"
 
@@ -22,11 +28,29 @@ Take lastTakeByStates(const mcap::Source& reader) {
   return last;
 }
 
+/// Each run has a plant of its own.
+void expectOneRun(const mcap::Source& reader) {
+  std::set<std::string> plants;
+  const auto& counts = reader.statistics().channel_message_counts;
+  for (const auto& [id, channel] : reader.channels()) {
+    const auto count = counts.find(id);
+    if (channel.topic != dds::topics::kPlantState.name || count == counts.end() || count->second == 0) continue;
+    plants.insert(mcap::valueOf(channel.metadata, "writer"));
+  }
+  if (plants.size() < 2) return;
+  throw UsageError(
+      fmt::format("expected a recording of one run, found the states of {} plants in it (writers {}): give the files "
+                  "of one run, or "
+                  "take its time out with `baton bag cut --from T --to T`",
+                  plants.size(), fmt::join(plants, ", ")));
+}
+
 }  // namespace
 
 std::uint64_t lastTakeBegin(const mcap::Source& reader) { return lastTake(reader).begin_ns; }
 
 Take lastTake(const mcap::Source& reader) {
+  expectOneRun(reader);
   const char* topic = dds::topics::kRewind.name;
   if (!hasTopic(reader, topic) && (isLeftOut(reader, topic) || !hasCertificate(reader))) {
     return lastTakeByStates(reader);

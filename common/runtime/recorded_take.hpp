@@ -15,6 +15,7 @@ struct Take {
   std::uint64_t begin_ns = 0;
   std::uint32_t resets = 0;  // before it, that the recording knows of
 };
+/// Throws UsageError when messages of several runs are in it, as where files were merged or one behind the other.
 [[nodiscard]] Take lastTake(const mcap::Source& reader);
 /// Where it begins.
 [[nodiscard]] std::uint64_t lastTakeBegin(const mcap::Source& reader);

@@ -158,10 +158,11 @@ void RecordingRange::findTimes(std::uint64_t begin_ns, const std::string& file) 
     throw UsageError(file + ": expected samples that carry a step, found none: choose times with --from and --to");
   }
   if (times.isEmpty()) {
-    throw UsageError(
-        fmt::format("--from-step, --to-step: expected steps that {} has, which{} are {} to {}, found {} to {}; {}",
-                    file, passText(begin_ns), steps.first, steps.last, steps_->from,
-                    steps_->to == kLast ? "its end" : std::to_string(steps_->to), kWhatToChoose));
+    const bool is_between = steps_->from >= steps.first && steps_->to <= steps.last;
+    throw UsageError(fmt::format(
+        "--from-step, --to-step: expected steps that {} has, which{} are {} to {}{}, found {} to {}; {}", file,
+        passText(begin_ns), steps.first, steps.last, is_between ? " with gaps (parts may be missing)" : "",
+        steps_->from, steps_->to == kLast ? "its end" : std::to_string(steps_->to), kWhatToChoose));
   }
   start_ns_ = times.first;
   end_ns_ = times.last;

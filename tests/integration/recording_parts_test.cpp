@@ -1,6 +1,7 @@
 // A recording of a real run that was split, read as one by every command; and pieces of it, cut out by steps.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -91,6 +92,10 @@ TEST_F(RecordingParts, EveryCommandReadsThemAsOne) {
 
   const Finished rerun = bench.baton(Words{"rerun"} + reversed());
   EXPECT_EQ(rerun.exit_code, 0) << rerun.out << rerun.err;
+  const Finished branch =
+      bench.baton(Words{"branch"} + reversed() + Words{"--at", "500", "--out", path("branch.mcap")});
+  EXPECT_EQ(branch.exit_code, 0) << branch.out << branch.err;
+  EXPECT_EQ(bench.baton({"bag", "diff", whole, path("branch.mcap"), "--from-step", "500"}).exit_code, 0);
   const nlohmann::json replay = bench.batonJson(Words{"replay"} + reversed() + Words{"--rate", "max", "--json"});
   EXPECT_EQ(replay.at("messages"), info.at("messages"));
 }
@@ -118,6 +123,9 @@ TEST_F(RecordingParts, AMissingOneIsNamedAndAnotherRunIsRefused) {
     EXPECT_NE((finished.out + finished.err).find(hole), std::string::npos)
         << command[1] << finished.out << finished.err;
   }
+  const Finished hash = bench.baton({"bag", "hash", folder.string()});
+  EXPECT_NE(hash.out.find(" are missing: what was before does not give the hash after them"), std::string::npos)
+      << hash.out;
   EXPECT_EQ(bench.baton({"bag", "verify", folder.string()}).exit_code, 1);
 }
 
@@ -154,6 +162,19 @@ TEST_F(RecordingParts, APieceBySteps) {
   const std::uint64_t messages = cut.at("messages");
   EXPECT_EQ(bench.batonJson(replay).at("messages"), messages + latched);
   EXPECT_EQ(bench.batonJson(replay + Words{"--no-latched"}).at("messages"), messages);
+  const Words by_step{"replay", whole, "--rate", "max", "--json", "--from-step", "500", "--to-step", "600"};
+  EXPECT_EQ(bench.batonJson(by_step).at("messages"), messages + latched);
+  const nlohmann::json by_time =
+      bench.batonJson({"bag", "cut", whole, path("by_time.mcap"), "--from-sim", "0.25", "--to-sim", "0.3", "--json"});
+  EXPECT_EQ(by_time.at("messages"), messages);
+  EXPECT_EQ(bench.baton({"bag", "diff", piece, path("by_time.mcap")}).exit_code, 0);
+  ASSERT_EQ(bench
+                .baton({"bag", "export", whole, "--csv", "--topics", "plant_state", "--from-step", "500", "--to-step",
+                        "600", "--out", path("exported")})
+                .exit_code,
+            0);
+  const std::string rows = contentOf(path("exported/plant_state.csv"));
+  EXPECT_EQ(std::ranges::count(rows, '\n'), 102) << "a head and 101 steps";
 
   const Finished beyond = bench.baton({"bag", "cut", whole, path("none.mcap"), "--from-step", "5000"});
   EXPECT_EQ(beyond.exit_code, 2);

@@ -1,3 +1,5 @@
+#include <spdlog/fmt/fmt.h>
+
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -31,6 +33,14 @@ HashedRun hashWholeRun(const mcap::FileList& file) {
   return hashRun(reader, file);
 }
 
+/// Of steps that are not there nothing can be said but that.
+std::string brokenText(const HashedRun& run, std::uint64_t broken) {
+  const std::uint64_t next = run.steps.upper_bound(broken)->first;
+  if (next == broken + 1) return fmt::format("the payloads of step {} do not give the hash after it", broken);
+  return fmt::format("steps {} to {} are missing: what was before does not give the hash after them", broken + 1,
+                     next - 1);
+}
+
 /// Prints the hash and says whether the payloads give it.
 ExitCode hash(const HashRequest& request) {
   ExitCode holes = ExitCode::kOk;
@@ -43,8 +53,7 @@ ExitCode hash(const HashRequest& request) {
                               {"last_step", run.steps.rbegin()->first},
                               {"payloads_agree", !broken}};
   if (broken) json["first_broken_step"] = *broken;
-  std::string verdict = broken ? "the payloads of step " + std::to_string(*broken) + " do not give the hash after it"
-                               : "the recorded payloads give it, step by step";
+  std::string verdict = broken ? brokenText(run, *broken) : "the recorded payloads give it, step by step";
   bool is_good = !broken;
   if (!request.other.empty()) {
     const mcap::FileList other_file =

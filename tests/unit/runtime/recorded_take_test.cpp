@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "mcap/reader.hpp"
 #include "runtime/latched.hpp"
 #include "support/small_recording.hpp"
@@ -58,6 +59,22 @@ void addReset(SmallRecording& out, std::uint32_t take, msg::RewindPhase end = ms
   for (const msg::RewindPhase phase : {msg::REWIND_PREPARE, end}) {
     rewind.phase(phase);
     out.add(dds::topics::kRewind, "plant", rewind);
+  }
+}
+
+TEST_F(RecordedTake, OfTwoRunsInOneFileNoneIsChosen) {
+  const auto path = write([](SmallRecording& out) {
+    addStates(out, {0, 1});
+    msg::PlantState state;
+    out.add(dds::topics::kPlantState, "plant of another run", state);  // merged, or behind it
+  });
+  try {
+    (void)lastTake(mcap::Reader(path));
+    FAIL() << "one of them was chosen";
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("expected a recording of one run, found the states of 2 plants"),
+              std::string::npos)
+        << error.what();
   }
 }
 

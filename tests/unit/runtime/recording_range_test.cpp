@@ -192,6 +192,13 @@ TEST_F(RecordingRangeTest, ARangeBeyondTheRunIsToldWhatTheRecordingHolds) {
   EXPECT_EQ(taken({.from_step = 110, .to_step = 5000}, "plant_state"), (Times{10})) << "as far as it goes";
 }
 
+TEST_F(RecordingRangeTest, ARangeWithinAGapIsToldOfIt) {
+  writeSteps(0, 5, 0);
+  writeSteps(20, 25, 10);  // a part is missing
+  const std::string gap = refusal({.from_step = 8, .to_step = 12});
+  EXPECT_NE(gap.find("which are 0 to 25 with gaps (parts may be missing), found 8 to 12"), std::string::npos) << gap;
+}
+
 TEST_F(RecordingRangeTest, WithoutStepsThereAreOnlyTimes) {
   writeNote(0);
   writeEvent(7, 1);
