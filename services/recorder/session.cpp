@@ -223,7 +223,7 @@ msg::RecordReply RecordingSession::answer(const msg::RecordRequest& request) {
     text = error.what();
     if (request.action() == msg::RECORD_STOP) fail(text);
   }
-  reply.path(path.substr(0, kMaxText));
+  reply.path(path);
   reply.text(text.substr(0, kMaxText));
   return reply;
 }

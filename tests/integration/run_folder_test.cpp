@@ -52,6 +52,16 @@ TEST(RunFolder, ItsProcessesInheritNoSockets) {
   EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
 }
 
+TEST(RunFolder, ARecordingIsNamedHoweverLongItsPathIs) {
+  const Bench bench;
+  const fs::path folder = bench.folder() / std::string(200, 'd') / std::string(200, 'e');
+  fs::create_directories(folder);
+  const std::string out = (folder / "out.mcap").string();
+  const nlohmann::json result =
+      bench.batonJson({"run", bench.write("run.yaml", shortContact()), "--out", out, "--json"});
+  EXPECT_EQ(result.at("recording").at("path"), out) << result;
+}
+
 /// The recorder has the user's rights, so names that come over DDS must not lead it anywhere.
 TEST(RunFolder, ARecordingGoesWhereTheOperatorSays) {
   const Bench bench;
