@@ -9,7 +9,8 @@
 namespace baton::test {
 namespace {
 
-constexpr bool kAsks = true;
+constexpr bool kAsks = true, kSays = false;  // what operators say, or others
+constexpr bool kIsInVain = false;            // it bites nobody, also with the key
 
 template <class Topic, class Fill>
 auto saying(const Topic& topic, const Fill& fill) {
@@ -134,7 +135,8 @@ const Attack kAttacks[] = {
                   statusOf("trajectory", "trajectory", msg::SERVICE_READY, run.pidOf("trajectory"));
               ready.plant({1, 2, 3});
               return ready;
-            })},
+            }),
+     kWritesOn, kSays, kIsInVain},
     {"finished", "plant",
      saying(dds::topics::kSimStatus,
             [](State state, Run) {
@@ -142,7 +144,8 @@ const Attack kAttacks[] = {
               status.state(msg::SIM_STATE_FINISHED);
               status.step(state.step());
               return status;
-            })},
+            }),
+     kWritesOn, kSays, kIsInVain},
     {"aborted", "plant",
      saying(dds::topics::kSimStatus,
             [](State state, Run) {
@@ -150,7 +153,8 @@ const Attack kAttacks[] = {
               status.state(msg::SIM_STATE_ABORTED);
               status.step(state.step());
               return status;
-            })},
+            }),
+     kWritesOn, kSays, kIsInVain},
     {"rewind", "plant",
      saying(dds::topics::kRewind,
             [](State state, Run) {
@@ -168,7 +172,8 @@ const Attack kAttacks[] = {
               ack.phase(msg::REWIND_COMMIT);
               ack.name("pd");
               return ack;
-            })},
+            }),
+     kWritesOn, kSays, kIsInVain},
     {"recorder_status", "recorder",
      saying(dds::topics::kRecorderStatus,
             [](State state, Run) {
@@ -176,7 +181,8 @@ const Attack kAttacks[] = {
               status.state(msg::RECORDER_FAILED);
               status.acknowledged_step(state.step() + 1000);
               return status;
-            })},
+            }),
+     kWritesOn, kSays, kIsInVain},
     {"swap_plan", "plant",
      saying(dds::topics::kSwapPlan,
             [](State state, Run) {
@@ -247,7 +253,7 @@ const Attack kAttacks[] = {
               request.path((run.bench.folder() / "authorized_keys").string());
               return request;
             }),
-     kWritesOn, kAsks},
+     kWritesOn, kAsks, kIsInVain},
     {"record_stop", "operator-1",
      saying(dds::topics::kRecordRequest,
             [](State, Run) {
@@ -263,7 +269,8 @@ const Attack kAttacks[] = {
               msg::ServiceManifest manifest;
               manifest.name("environment");
               return manifest;
-            })},
+            }),
+     kWritesOn, kSays, kIsInVain},
     {"event", "plant",
      saying(dds::topics::kEvent,
             [](State, Run) {
@@ -283,12 +290,13 @@ const Attack kAttacks[] = {
        for (int i = 0; i < 5; ++i) stranger.say(dds::topics::kContact, contactAt(state.step() + 1, 50.0));
      }},
     {"another_type", "gauge",
-     [](Stranger& stranger, State, Run) { stranger.sayRaw("contact", "somebody::Else", std::array<std::byte, 8>{}); }},
+     [](Stranger& stranger, State, Run) { stranger.sayRaw("contact", "somebody::Else", std::array<std::byte, 8>{}); },
+     kWritesOn, kSays, kIsInVain},
     {"control_characters", "beacon",
      [](Stranger& stranger, State, Run) {
        stranger.sayRaw("\nssh-ed25519 AAAA\n", "somebody::Else", std::array<std::byte, 8>{});
      },
-     "control characters in the name"},
+     "control characters in the name", kSays, kIsInVain},
     {"truncated", "tracking",
      [](Stranger& stranger, State, Run) {
        stranger.sayBytes(dds::topics::kJointCommand, std::array{std::byte{0}, std::byte{1}, std::byte{0}});
@@ -326,15 +334,16 @@ const Attack kAttacks[] = {
                         std::array<std::byte, 8>{});
      }},
     {"refusing_readers", "viewer",
-     [](Stranger& stranger, State, Run) { stranger.refuseAll(dds::topics::kPlantState, 50); },
-     "asks for samples again and again"},
-    {"user_data", "chatterbox", [](Stranger& stranger, State, Run) { stranger.participant().announce(); },
-     "calls itself chatterbox"},
+     [](Stranger& stranger, State, Run) { stranger.aside([&] { stranger.refuseAll(dds::topics::kPlantState, 50); }); },
+     "asks for samples again and again", kSays, kIsInVain},
+    {"user_data", "chatterbox",
+     [](Stranger& stranger, State, Run) { stranger.aside([&] { stranger.participant().announce(); }); },
+     "calls itself chatterbox", kSays, kIsInVain},
     {"flood_of_its_own", "camera",
      [](Stranger& stranger, State, Run) {
        stranger.sayRaw("their_picture", "somebody::Picture", std::vector<std::byte>(60'000));
      },
-     "calls itself camera"},
+     "calls itself camera", kSays, kIsInVain},
 };
 
 }  // namespace

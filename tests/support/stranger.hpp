@@ -2,12 +2,16 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
+#include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dds/fastdds.hpp"
@@ -49,6 +53,12 @@ class Stranger {
     write({.topic = topic.name, .type = topic.type, .profile = topic.profile, .max_payload = 1 << 20}, payload,
           source_timestamp_ns);
     speaks_baton_ = true;
+  }
+  /// Does something on a thread of its own, one thing at a time: DDS holds locks while it calls back. What comes
+  /// meanwhile is left out.
+  void aside(std::function<void()> what) {
+    if (aside_.valid() && aside_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    aside_ = std::async(std::launch::async, std::move(what));
   }
   /// Readers of a topic that have room for one sample and never take it: they ask for what they have no room for as
   /// often as the writer asks them.
@@ -99,6 +109,7 @@ class Stranger {
   std::map<std::string, std::unique_ptr<dds::RawWriter>> writers_;
   bool speaks_baton_ = false;
   std::size_t refusing_ = 0;
+  std::future<void> aside_;
 };
 
 }  // namespace baton::test
