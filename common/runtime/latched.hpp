@@ -50,7 +50,10 @@ class LatchedSamples {
   };
 
   /// @param max_bytes  of payloads; beyond it the oldest go of those that are not the latest of their instance.
-  explicit LatchedSamples(std::size_t max_bytes) : max_bytes_(max_bytes) {}
+  /// @param max_foreign_bytes  when given, of topics that are none of Baton's, which then do not count among the
+  /// others: beyond it also a latest one is not kept.
+  explicit LatchedSamples(std::size_t max_bytes, std::optional<std::size_t> max_foreign_bytes = {})
+      : max_bytes_(max_bytes), max_foreign_bytes_(max_foreign_bytes) {}
 
   /// @param depth  of the stream's history; nothing is kept for 0.
   /// @param topic  when it is one of Baton's: of resets only a commit is kept, and what it ends goes.
@@ -68,8 +71,14 @@ class LatchedSamples {
     samples_.push_back({{head, {bytes.begin(), bytes.end()}}, key, topic, ++last_number_});
     history.push_back(std::prev(samples_.end()));
     bytes_ += bytes.size();
+    if (topic == nullptr) foreign_bytes_ += bytes.size();
     while (history.size() > depth) drop(history.front());
-    while (bytes_ > max_bytes_ && !superseded_.empty()) drop(superseded_.begin()->second);
+    while (topic == nullptr && max_foreign_bytes_ && foreign_bytes_ > *max_foreign_bytes_ && !history.empty()) {
+      if (history.size() == 1) ++given_up_;
+      drop(history.front());
+    }
+    while (bytes_ - (max_foreign_bytes_ ? foreign_bytes_ : 0) > max_bytes_ && !superseded_.empty())
+      drop(superseded_.begin()->second);
   }
   /// Calls f(sample) in the order in which they were kept.
   template <class F>
@@ -80,10 +89,12 @@ class LatchedSamples {
     samples_.clear();
     histories_.clear();
     superseded_.clear();
-    bytes_ = 0;
+    bytes_ = foreign_bytes_ = 0;
   }
   [[nodiscard]] std::size_t size() const { return samples_.size(); }
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
+  /// Latest samples of foreign topics that were not kept.
+  [[nodiscard]] std::size_t givenUp() const { return given_up_; }
 
  private:
   using Key = std::pair<std::size_t, std::string>;  // stream, instance
@@ -113,11 +124,14 @@ class LatchedSamples {
     if (!history.empty()) superseded_.erase(history.back()->number);  // where it is the latest now
     superseded_.erase(kept->number);
     bytes_ -= kept->sample.bytes.size();
+    if (kept->topic == nullptr) foreign_bytes_ -= kept->sample.bytes.size();
     samples_.erase(kept);
   }
 
   std::size_t max_bytes_;
-  std::size_t bytes_ = 0;
+  std::optional<std::size_t> max_foreign_bytes_;
+  std::size_t bytes_ = 0, foreign_bytes_ = 0;
+  std::size_t given_up_ = 0;
   std::list<Kept> samples_;
   std::map<Key, History> histories_;
   std::map<std::uint64_t, Place> superseded_;  // those that may go, by number: of their instance there is a later one

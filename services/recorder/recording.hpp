@@ -40,6 +40,11 @@ struct LatchedHead {
 using Latched = LatchedSamples<LatchedHead>;
 /// Payloads of those that a recording's files may begin with.
 inline constexpr std::size_t kMostLatchedBytes = std::size_t{16} << 20;
+inline constexpr std::size_t kMostForeignLatchedBytes = std::size_t{64} << 20;
+inline constexpr const char* kForeignGivenUp =
+    "the latest samples for late joiners of foreign topics take more than 64 MB: a file that begins later does not "
+    "begin "
+    "with all of them";
 
 class Recording {
  public:

@@ -144,6 +144,9 @@ void RecordingSession::keep(const Stream& stream, const SampleQueue::Entry& entr
   latched_.keep(stream.index, "", stream.latched,
                 {.stream = &stream, .sequence = entry.sequence, .source_timestamp_ns = entry.source_timestamp_ns},
                 payload, stream.facts);
+  if (latched_.givenUp() > 0 && !std::exchange(told_given_up_, true)) {
+    service_.event(msg::SEVERITY_WARNING, "record", kForeignGivenUp);
+  }
 }
 
 void RecordingSession::write(const Stream& stream, const SampleQueue::Entry& entry, std::span<const std::byte> payload,

@@ -84,7 +84,8 @@ class RecordingSession {
   RunNotes notes_;
   Holes holes_;
   std::map<std::pair<std::uint32_t, dds::Guid>, Stream> streams_;
-  Latched latched_{kMostLatchedBytes};
+  Latched latched_{kMostLatchedBytes, kMostForeignLatchedBytes};
+  bool told_given_up_ = false;
   std::unique_ptr<Recording> recording_;
   std::unique_ptr<Ring> ring_;
   std::string path_;            // of the latest recording

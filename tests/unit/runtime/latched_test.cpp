@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "dds/topics.hpp"
 #include "mcap/reader.hpp"
 #include "mcap/writer.hpp"
 
@@ -96,6 +97,22 @@ TEST(LatchedSamples, WhereMemoryRunsOutTheOldestGoAndTheLatestOfEachStay) {
   kept.keep(1, "", 1);                                  // 1: the only word of its writer
   for (int i = 0; i < 20; ++i) kept.keep(2, "", 1000);  // 2 to 21
   EXPECT_EQ(kept.held(), (std::vector<int>{1, 18, 19, 20, 21}));
+}
+
+TEST(LatchedSamples, ForeignOnesTakeNoMoreThanTheirShare) {
+  LatchedSamples<int> samples(1000, 30);
+  const dds::TopicFacts event = dds::topics::kEvent;
+  for (int i = 0; i < 5; ++i) {
+    samples.keep(static_cast<std::size_t>(i), "", 1, i, bytesOf("0123456789"));
+    samples.keep(10, "", 8, 10 + i, bytesOf("0123456789"), &event);
+  }
+  std::vector<int> held;
+  samples.forEach([&](const auto& sample) { held.push_back(sample.head); });
+  EXPECT_EQ(held, (std::vector<int>{0, 10, 1, 11, 2, 12, 13, 14}));
+  EXPECT_EQ(samples.givenUp(), 2U);
+  samples.keep(0, "", 2, 20, bytesOf("01234"));
+  EXPECT_EQ(samples.bytes(), 75U) << "its own history goes first";
+  EXPECT_EQ(samples.givenUp(), 2U);
 }
 
 TEST(LatchedSamples, OfThoseThatMayGoTheOldestGoesFirst) {
