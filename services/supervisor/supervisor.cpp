@@ -352,6 +352,7 @@ void Supervisor::runIsOver() {
   considerAbort();
   for (const auto& child : children_) {
     if (child->isRunning()) resident_[child->name()] = child->residentKilobytes();
+    if (child->name() == kRecorderName) child->signal(SIGCONT);  // nobody notices in real time that it is stopped
   }
   // A run that never started has nobody who would end it: the recorder is told like everybody else.
   if (isRunning(kRecorderName) && startup_s_ >= 0.0) {

@@ -134,6 +134,16 @@ INSTANTIATE_TEST_SUITE_P(Each, StoppedProcess,
                          ::testing::Values("supervisor", "plant", "recorder", "environment", "tracking"),
                          [](const auto& service) { return service.param; });
 
+TEST(Fault, ARecorderThatWasStoppedClosesItsFileWhenTheRunEnds) {
+  const Bench bench;
+  const LiveRun run(bench, restingContact("duration_s: 3\nmode: realtime\nmax_missed_steps: 1000\n"));
+  ASSERT_EQ(kill(run.pidOf("recorder"), SIGSTOP), 0);
+  EXPECT_EQ(run.result().at("state"), "finished");
+  const std::string log = readFile(run.folder() / "supervisor.log");
+  EXPECT_EQ(log.find("does not close"), std::string::npos) << log;
+  EXPECT_EQ(log.find("killing"), std::string::npos) << log;
+}
+
 TEST(Fault, AServiceThatSaysNothingIsInTheStatusAsSilent) {
   const Bench bench;
   const LiveRun run(bench, endlessContact(), {"--paused"});
