@@ -40,17 +40,11 @@ void expectOneRun(const mcap::Source& reader) {
   if (plants.size() < 2) return;
   throw UsageError(
       fmt::format("expected a recording of one run, found the states of {} plants in it (writers {}): give the files "
-                  "of one run, or "
-                  "take its time out with `baton bag cut --from T --to T`",
+                  "of one run, or take its time out with `baton bag cut --from T --to T`",
                   plants.size(), fmt::join(plants, ", ")));
 }
 
-}  // namespace
-
-std::uint64_t lastTakeBegin(const mcap::Source& reader) { return lastTake(reader).begin_ns; }
-
-Take lastTake(const mcap::Source& reader) {
-  expectOneRun(reader);
+Take findLastTake(const mcap::Source& reader) {
   const char* topic = dds::topics::kRewind.name;
   if (!hasTopic(reader, topic) && (isLeftOut(reader, topic) || !hasCertificate(reader))) {
     return lastTakeByStates(reader);
@@ -62,5 +56,16 @@ Take lastTake(const mcap::Source& reader) {
   });
   return last;
 }
+
+}  // namespace
+
+std::uint64_t lastTakeBegin(const mcap::Source& reader) { return lastTake(reader).begin_ns; }
+
+Take lastTake(const mcap::Source& reader) {
+  expectOneRun(reader);
+  return findLastTake(reader);
+}
+
+std::uint32_t resetsIn(const mcap::Source& reader) { return findLastTake(reader).resets; }
 
 }  // namespace baton

@@ -17,6 +17,8 @@ struct Take {
 };
 /// Throws UsageError when messages of several runs are in it, as where files were merged or one behind the other.
 [[nodiscard]] Take lastTake(const mcap::Source& reader);
+/// Resets in it, of whatever runs.
+[[nodiscard]] std::uint32_t resetsIn(const mcap::Source& reader);
 /// Where it begins.
 [[nodiscard]] std::uint64_t lastTakeBegin(const mcap::Source& reader);
 

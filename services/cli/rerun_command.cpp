@@ -42,10 +42,11 @@ nlohmann::ordered_json toJson(const Rerun& made, const std::string& recording) {
 
 /// What was made until something went wrong is there to look into, where it says; nothing leaves nothing.
 Rerun rerunIn(const fs::path& folder, const mcap::FileList& files, const RunRequest& run) {
+  const bool was_there = fs::exists(run.out);
   try {
     return rerun(files, folder, run, runToTheEnd);
   } catch (const std::exception&) {
-    if (fs::exists(run.out)) {
+    if (!was_there && fs::exists(run.out)) {
       say(stderr, "baton: what was repeated is in %s\n", folder.c_str());
     } else {
       fs::remove_all(folder);
@@ -64,13 +65,14 @@ void tellRerun(const RerunRequest& request, ExitCode& exit_code) {
   run.reads = files.paths();
   if (!is_kept) run.out = (folder / "rerun.mcap").string();
   const Rerun made = rerunIn(folder, files, run);
+  const bool is_recorded = fs::exists(made.recording);
   if (request.json) {
     sayText(toText(toJson(made, files.string())) + '\n');
   } else {
     say("%s\n", made.text().c_str());
-    if (is_kept || !made.isIdentical()) say("recording %s\n", made.recording.c_str());
+    if (is_recorded && (is_kept || !made.isIdentical())) say("recording %s\n", made.recording.c_str());
   }
-  if (made.isIdentical()) fs::remove_all(folder);  // else it is there to look into
+  if (made.isIdentical() || !is_recorded) fs::remove_all(folder);  // else it is there to look into
   exit_code = made.isIdentical() ? holes : ExitCode::kFailed;
   if (made.was_interrupted) exit_code = ExitCode::kInterrupted;
 }

@@ -333,6 +333,8 @@ TEST(Rerun, WhosePlantDiesBeforeTheFirstStepDiffersAndTheRecordingIsNotBlamed) {
   const std::string said = again.out + again.err;
   EXPECT_NE(said.find("plant could not start"), std::string::npos) << said;
   EXPECT_EQ(said.find("expected the recording of a run"), std::string::npos) << said;
+  EXPECT_EQ(said.find("\nrecording "), std::string::npos) << "there is none: " << said;
+  EXPECT_TRUE(std::filesystem::is_empty(bench.folder() / "reruns")) << "nothing was made, and nothing is left";
 }
 
 TEST(Rerun, RefusesWhatCannotBeRepeated) {

@@ -200,6 +200,14 @@ TEST(Reset, GoesBackToTheFirstStepAndRepeatsTheRun) {
   EXPECT_EQ(hash.at("hash"), expected);
   EXPECT_TRUE(hash.at("payloads_agree"));
   EXPECT_EQ(bench.batonJson({"metrics", run.recording, "--json"}).at("steps"), kShortSteps);
+  // What shows all of the file says that steps come twice.
+  const std::vector<std::string> cat{"bag", "cat", run.recording, "--topics", "swap_report"};
+  const Finished all = bench.baton(cat);
+  EXPECT_EQ(all.exit_code, 0);
+  EXPECT_NE(all.err.find("the run was reset (2 times)"), std::string::npos) << all.err;
+  std::vector<std::string> last = cat;
+  last.insert(last.end(), {"--from-step", "0"});
+  EXPECT_EQ(bench.baton(last).err, "");
 }
 
 TEST(Reset, WhileTheRunGoesOn) {

@@ -1,11 +1,14 @@
 #include "bag/selection.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cstdint>
 
 #include "base/text.hpp"
 #include "control/nearest_name.hpp"
 #include "mcap/lookup.hpp"
+#include "runtime/recorded_take.hpp"
 #include "runtime/say.hpp"
 
 namespace baton {
@@ -45,6 +48,13 @@ SelectedMessages::SelectedMessages(const Selection& selection)
     warn(found_.files.string(), info.problem);
   }
   for (const std::string& text : info.contradictions) warn(found_.files.string(), text);
+  if (has_range_) return;
+  if (const std::uint32_t resets = resetsIn(reader_); resets > 0) {
+    warn(found_.files.string(),
+         fmt::format("the run was reset ({} times): steps before the last reset are among these; "
+                     "--from-step 0 leaves them out",
+                     resets));
+  }
 }
 
 void SelectedMessages::warn(const std::string& file, const std::string& problem) {

@@ -62,6 +62,15 @@ void addReset(SmallRecording& out, std::uint32_t take, msg::RewindPhase end = ms
   }
 }
 
+TEST_F(RecordedTake, ResetsAreCountedOfWhateverRun) {
+  const auto path = write([](SmallRecording& out) {
+    addStates(out, {0, 1});
+    addReset(out, 1);
+    addStates(out, {0});
+  });
+  EXPECT_EQ(resetsIn(mcap::Reader(path)), 1U);
+}
+
 TEST_F(RecordedTake, OfTwoRunsInOneFileNoneIsChosen) {
   const auto path = write([](SmallRecording& out) {
     addStates(out, {0, 1});
