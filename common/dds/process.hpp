@@ -12,7 +12,7 @@ namespace baton::dds {
 /// Ticks are the kernel's, sysconf(_SC_CLK_TCK) of them a second.
 struct ProcessFacts {
   int parent = 0;
-  std::uint64_t cpu_ticks = 0;  // of its own and of the kernel for it
+  std::uint64_t cpu_ticks = 0;  // spent by it, and by the kernel for it
   std::uint64_t began = 0;      // ticks after the machine: with the number it is that process and no other
 };
 

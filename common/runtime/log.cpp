@@ -22,7 +22,7 @@ namespace {
 class Sink final : public spdlog::sinks::base_sink<std::mutex> {
   void sink_it_(const spdlog::details::log_msg& message) override {
     spdlog::memory_buf_t line;
-    // What it tells of others begins no line of its own, which would look like another message.
+    // One line each: what others are called could hold a line break, and look like another message.
     const std::string text = escaped(std::string_view(message.payload.data(), message.payload.size()));
     spdlog::details::log_msg shown = message;
     shown.payload = text;
