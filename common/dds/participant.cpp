@@ -32,6 +32,7 @@ namespace transport = fastdds::transport;
 
 constexpr int kMaxDomain = 232;
 constexpr std::size_t kMaxKnown = 10'000;  // of peers, and of strangers: a flood of them must not fill the memory
+constexpr std::size_t kMaxNames = 300;     // bytes of a peer's cell, run and service together
 constexpr int kSocketBuffer = 4 << 20;     // loopback UDP loses datagrams when a busy receiver's buffer is full
 
 // Discovery data of a Baton process: one field a line, then the proof of them.
@@ -52,9 +53,9 @@ std::optional<Peer> decodePeer(const std::string& text, const GuidPrefix& prefix
   std::getline(lines, peer.run);
   std::getline(lines, peer.service);
   lines >> peer.started_ns >> peer.pid >> peer.process_began;
-  // They are shown in logs and on terminals. Ours have no such characters.
+  // They are shown in logs and on terminals, and remembered. Ours have no such characters, and are short.
   const std::string names = peer.cell + peer.run + peer.service;
-  if (lines.fail() || !isPlain(names)) return std::nullopt;
+  if (lines.fail() || !isPlain(names) || names.size() > kMaxNames) return std::nullopt;
   std::getline(lines, tag);  // what is left of the line
   std::getline(lines, peer.proof);
   return peer;

@@ -1,6 +1,6 @@
 #include "runtime/admission.hpp"
 
-#include <fmt/format.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <utility>

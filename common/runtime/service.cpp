@@ -53,11 +53,12 @@ Service::Service(ServiceOptions options, Scenario scenario)
     : options_(std::move(options)),
       scenario_(std::move(scenario)),
       // A peer's discovery data may come after its endpoints are matched.
-      participant_(options_.participant(),
-                   [this](const dds::Peer& peer) { asio::post(executor_, [this, peer] { peerJoined(peer); }); },
-                   [this](const dds::GuidPrefix& stranger, dds::Trespass what) {
-                     asio::post(executor_, [this, stranger, what] { admission_.turnedAway(stranger, what); });
-                   }),
+      participant_(
+          options_.participant(),
+          [this](const dds::Peer& peer) { asio::post(executor_, [this, peer] { peerJoined(peer); }); },
+          [this](const dds::GuidPrefix& stranger, dds::Trespass what) {
+            asio::post(executor_, [this, stranger, what] { admission_.turnedAway(stranger, what); });
+          }),
       admission_(participant_, options_.is_open,
                  [this](const std::string& text) { event(msg::SEVERITY_WARNING, "stranger", text); }) {
   for (const int number : endingSignals()) signals_.add(number);
