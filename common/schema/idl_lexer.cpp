@@ -80,9 +80,10 @@ Token IdlLexer::read() {
   }
   if (isDigit(first) || (first == '.' && rest_.size() > 1 && isDigit(rest_[1]))) {
     // With whatever is written to it: what is no number is refused whole. A sign may follow an exponent.
+    const bool is_hex = rest_.starts_with("0x") || rest_.starts_with("0X");
     char before = 0;
-    return take(Token::Kind::kNumber, lengthOf(rest_, [&before](char c) {
-                  const bool is_exponent_sign = (c == '+' || c == '-') && (before == 'e' || before == 'E');
+    return take(Token::Kind::kNumber, lengthOf(rest_, [&before, is_hex](char c) {
+                  const bool is_exponent_sign = !is_hex && (c == '+' || c == '-') && (before == 'e' || before == 'E');
                   before = c;
                   return isLetter(c) || isDigit(c) || c == '.' || is_exponent_sign;
                 }));
@@ -96,19 +97,26 @@ Token IdlLexer::read() {
   return take(Token::Kind::kBad, 1);
 }
 
-/// What is escaped in it stays as it is written: only units are shown, and those have nothing to escape.
+/// What is escaped in it stays as it is written: of strings only units are shown, which have nothing to escape.
 Token IdlLexer::string(char quote) {
   std::size_t end = 1;
   while (end < rest_.size() && rest_[end] != quote && rest_[end] != '\n') end += rest_[end] == '\\' ? 2 : 1;
   if (end >= rest_.size() || rest_[end] == '\n') return take(Token::Kind::kBad, std::min(end, rest_.size()));
   rest_.remove_prefix(1);
-  const Token token = take(Token::Kind::kString, end - 1);
+  const Token token = take(quote == '"' ? Token::Kind::kString : Token::Kind::kCharacter, end - 1);
   rest_.remove_prefix(1);
   return token;
 }
 
 bool IdlLexer::accept(std::string_view text) {
   if (!is(text)) return false;
+  advance();
+  return true;
+}
+
+bool IdlLexer::acceptTwice(std::string_view sign) {
+  if (!is(sign) || !rest_.starts_with(sign)) return false;
+  advance();
   advance();
   return true;
 }
@@ -129,10 +137,20 @@ std::string IdlLexer::scopedName(const std::string& what) {
   full += name(what);
   while (accept("::")) {
     full += "::" + name("a name");
-    if (full.size() > kMaxNameBytes)
-      fail("names of at most " + std::to_string(kMaxNameBytes) + " bytes", "a longer one");
+    if (full.size() > kMaxNameBytes) failBeyond(kMaxNameBytes, "bytes in a name");
   }
   return full;
+}
+
+void IdlLexer::skipTo(std::string_view end, std::string_view begin) {
+  for (std::size_t open = 1; open > 0; advance()) {
+    const Token::Kind kind = token_.kind;
+    if (kind == Token::Kind::kEnd || kind == Token::Kind::kBad || (end == ")" && is(";"))) {
+      fail("'" + std::string(end) + "'");
+    }
+    open += is(begin) ? 1 : 0;
+    open -= is(end) ? 1 : 0;
+  }
 }
 
 void IdlLexer::fail(const std::string& expected) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,7 @@ struct Token {
     kWord,
     kNumber,
     kString,
+    kCharacter,
     kSign,
     kDirective,  // a line for the preprocessor that may change what is read
     kBad,        // no part of IDL
@@ -41,6 +43,8 @@ class IdlLexer {
   }
   /// Takes it if it does.
   bool accept(std::string_view text);
+  /// Takes "<<" or ">>", of whose sign two stand side by side.
+  bool acceptTwice(std::string_view sign);
   /// Takes it.
   void expect(std::string_view text);
   /// Takes a word that is not a keyword.
@@ -48,9 +52,16 @@ class IdlLexer {
   /// Takes "a::b" or "::a::b"; returned as written.
   [[nodiscard]] std::string scopedName(const std::string& what);
 
+  /// Takes all up to the end of what was opened, with all that is opened within.
+  void skipTo(std::string_view end, std::string_view begin);
+
   [[noreturn]] void fail(const std::string& expected) const;
   [[noreturn]] void fail(const std::string& expected, const std::string& found) const {
     failAt(token_.line, expected, found);
+  }
+  /// "expected at most 32 modules within each other, found more"
+  [[noreturn]] void failBeyond(std::uint64_t limit, const std::string& what) const {
+    fail("at most " + std::to_string(limit) + " " + what, "more");
   }
 
  private:

@@ -13,9 +13,12 @@
 
 namespace baton::schema {
 
+/// Holds every number of 64 bits, signed or unsigned.
+__extension__ using Number = __int128;
+
 struct Constant {
   const Type* type = nullptr;
-  std::optional<std::int64_t> value{};  // nothing for a string or a number with a fraction
+  std::optional<Number> value{};  // nothing for a string or a number with a fraction
 };
 
 using TypeNames = std::map<std::string, const Type*, std::less<>>;
@@ -52,10 +55,9 @@ class IdlNames {
 
   /// Takes the name of a type that was declared before.
   [[nodiscard]] const Type* type();
-  /// Takes a whole number, written out or a constant's name.
-  [[nodiscard]] std::int64_t integer(std::int64_t smallest, std::int64_t largest);
-  /// Takes a value of the type, written out or a constant's name.
-  [[nodiscard]] std::optional<std::int64_t> value(const Type& type);
+  [[nodiscard]] bool hasType(const std::string& name) const { return lookUp(types_, name) != nullptr; }
+  /// Null when no constant has the name.
+  [[nodiscard]] const Constant* constant(const std::string& name) const { return lookUp(constants_, name); }
 
  private:
   template <class Map>

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <limits>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
+#include "schema/idl_annotations.hpp"
 #include "schema/idl_lexer.hpp"
 #include "schema/idl_names.hpp"
+#include "schema/idl_values.hpp"
 #include "schema/limits.hpp"
 
 namespace baton::schema {
@@ -44,20 +44,15 @@ constexpr std::array kPrimitives{
     Primitive{"string", Kind::kString, 4},
 };
 
-// Annotations that put a member elsewhere than its place among the others, or nowhere.
-constexpr std::array<std::string_view, 3> kMoving{"optional", "non_serialized", "nonserialized"};
 // An enum with fewer bits takes one byte or two in the payloads of some vendors and four in those of others.
 constexpr std::int64_t kMostBitsOfShortEnum = 16, kBitsOfEnum = 32;
 
-/// Older IDL of some vendors writes @Key and @Extensibility(FINAL_EXTENSIBILITY).
-std::string lowerCase(std::string_view text) {
-  std::string lower(text);
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return lower;
-}
+constexpr std::int64_t kMostElements = std::numeric_limits<std::uint32_t>::max();  // of an array, sequence or string
 
-std::string atMost(std::uint64_t limit, const std::string& what) {
-  return "at most " + std::to_string(limit) + " " + what;
+/// What a union can be switched on.
+bool isDiscriminator(Kind kind) {
+  return kind == Kind::kEnum || kind == Kind::kBoolean || kind == Kind::kOctet || kind == Kind::kChar ||
+         isInteger(kind);
 }
 
 }  // namespace
@@ -76,122 +71,15 @@ class IdlParser {
   }
 
  private:
-  struct Annotations {
-    std::string unit;
-    bool is_key = false;
-    std::optional<std::int64_t> value;  // of an enumerator
-    bool is_declaration = false;        // what follows says what an annotation is
-  };
-
-  Annotations annotations() {
-    Annotations all;
-    while (lexer_.accept("@")) {
-      const std::string name = annotationName();
-      if (name == "unit") {
-        all.unit = unit();
-      } else if (name == "value") {
-        all.value = enumerationValue();
-      } else if (name == "bit_bound") {
-        bitBound();
-      } else if (name == "extensibility") {
-        expectPlain(extensibility());
-      } else if (std::ranges::count(kMoving, name) > 0) {
-        lexer_.fail("a member that always has its place in a payload", "@" + name + ", which is not supported");
-      } else {
-        all.is_key = all.is_key || name == "key";
-        all.is_declaration = all.is_declaration || name == "annotation";
-        expectPlain(name);
-        if (lexer_.accept("(")) skipTo(")", "(");
-      }
-    }
-    return all;
-  }
-
-  /// Without the vendor's or module's name before it.
-  std::string annotationName() {
-    std::string name;
-    do {
-      if (lexer_.token().kind != Token::Kind::kWord) lexer_.fail("an annotation's name");
-      name = lowerCase(lexer_.token().text);
-      lexer_.advance();
-    } while (lexer_.accept("::"));
-    return name;
-  }
-
-  /// Final and appendable types are the same in plain CDR.
-  void expectPlain(const std::string& extensibility) const {
-    if (extensibility.starts_with("mutable")) {
-      lexer_.fail("a final or an appendable type", "a mutable one, whose parameter lists are not supported");
-    }
-  }
-
-  std::string extensibility() {
-    openArgument();
-    const std::string kind = lexer_.token().kind == Token::Kind::kWord ? lowerCase(lexer_.token().text) : "";
-    for (const char* known : {"final", "appendable", "extensible", "mutable"}) {
-      if (!kind.starts_with(known)) continue;
-      lexer_.advance();
-      lexer_.expect(")");
-      return kind;
-    }
-    lexer_.fail("FINAL, APPENDABLE or MUTABLE");
-  }
-
-  void bitBound() {
-    openArgument();
-    const std::int64_t bits = names_.integer(1, 64);
-    lexer_.expect(")");
-    if (bits > kMostBitsOfShortEnum && bits <= kBitsOfEnum) return;
-    lexer_.fail("an enum of four bytes", "@bit_bound(" + std::to_string(bits) + "), which is not supported");
-  }
-
-  std::int64_t enumerationValue() {
-    openArgument();
-    const std::int64_t value = anyEnumerator();
-    lexer_.expect(")");
-    return value;
-  }
-  std::int64_t anyEnumerator() {
-    return names_.integer(std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max());
-  }
-
-  std::string unit() {
-    openArgument();
-    if (lexer_.token().kind != Token::Kind::kString) lexer_.fail("the unit as a string");
-    std::string text(lexer_.token().text);
-    lexer_.advance();
-    lexer_.expect(")");
-    return text;
-  }
-
-  /// An annotation's only argument may be called by its name.
-  void openArgument() {
-    lexer_.expect("(");
-    if (lexer_.accept("value")) lexer_.expect("=");
-  }
-
-  /// Up to the end of what was opened, with all that is opened within.
-  void skipTo(std::string_view end, std::string_view begin) {
-    for (std::size_t open = 1; open > 0; lexer_.advance()) {
-      const Token::Kind kind = lexer_.token().kind;
-      if (kind == Token::Kind::kEnd || kind == Token::Kind::kBad || (end == ")" && lexer_.is(";"))) {
-        lexer_.fail("'" + std::string(end) + "'");
-      }
-      open += lexer_.is(begin) ? 1 : 0;
-      open -= lexer_.is(end) ? 1 : 0;
-    }
-  }
-
   const Type* add(Type type) {
-    if (set_.types_.size() >= kMaxDefinitions) lexer_.fail(atMost(kMaxDefinitions, "types"), "more");
-    if (type.depth > kMaxDepth) lexer_.fail(atMost(kMaxDepth, "types within each other"), "more");
-    if (type.least_bytes > kMaxLeastBytes) lexer_.fail(atMost(kMaxLeastBytes, "bytes for a value"), "a larger type");
+    if (set_.types_.size() >= kMaxDefinitions) lexer_.failBeyond(kMaxDefinitions, "types");
+    if (type.depth > kMaxDepth) lexer_.failBeyond(kMaxDepth, "types within each other");
+    if (type.least_bytes > kMaxLeastBytes) lexer_.failBeyond(kMaxLeastBytes, "bytes for a value");
     return &set_.types_.emplace_back(std::move(type));
   }
 
-  std::uint64_t bound() {
-    return static_cast<std::uint64_t>(names_.integer(1, std::numeric_limits<std::uint32_t>::max()));
-  }
+  /// Of a sequence or a string.
+  std::uint64_t bound() { return static_cast<std::uint64_t>(values_.integerBeforeAngle(1, kMostElements)); }
 
   // --- types by name
 
@@ -219,7 +107,7 @@ class IdlParser {
 
   const Type* sequence() {
     // Recursion: as deep as sequences are nested in the text.
-    if (++nesting_ > kMaxDepth) lexer_.fail(atMost(kMaxDepth, "types within each other"), "more");
+    if (++nesting_ > kMaxDepth) lexer_.failBeyond(kMaxDepth, "types within each other");
     lexer_.expect("<");
     const Type* element = typeName();
     const std::uint64_t most = lexer_.accept(",") ? bound() : 0;
@@ -234,8 +122,8 @@ class IdlParser {
     std::string name = lexer_.name("a name");
     std::vector<std::uint64_t> sizes;
     while (lexer_.accept("[")) {
-      if (sizes.size() == kMaxDepth) lexer_.fail(atMost(kMaxDepth, "dimensions"), "more");
-      sizes.push_back(bound());
+      if (sizes.size() == kMaxDepth) lexer_.failBeyond(kMaxDepth, "dimensions");
+      sizes.push_back(static_cast<std::uint64_t>(values_.integer(1, kMostElements)));
       lexer_.expect("]");
     }
     std::ranges::reverse(sizes);  // the last index is the innermost
@@ -253,7 +141,7 @@ class IdlParser {
   // --- definitions
 
   void addMember(Type& type, Member member) const {
-    if (type.members.size() == kMaxMembers) lexer_.fail(atMost(kMaxMembers, "members"), "more");
+    if (type.members.size() == kMaxMembers) lexer_.failBeyond(kMaxMembers, "members");
     if (std::ranges::count(type.members, member.name, &Member::name) > 0) {
       lexer_.fail("each member's name once", "'" + member.name + "' again");
     }
@@ -274,7 +162,7 @@ class IdlParser {
     Type type{.kind = Kind::kStruct, .name = names_.claim(short_name)};
     lexer_.expect("{");
     do {
-      const Annotations marks = annotations();
+      const Annotations marks = annotations_.read();
       const Type* member_type = typeName();
       do {
         auto [name, declared] = declarator(member_type);
@@ -286,17 +174,24 @@ class IdlParser {
     finish(std::move(type));
   }
 
-  void enumeration() {
+  std::int64_t enumerator() {
+    return values_.integer(std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max());
+  }
+
+  void enumeration(std::int64_t bits) {
+    if (bits <= kMostBitsOfShortEnum || bits > kBitsOfEnum) {
+      lexer_.fail("an enum of four bytes", "@bit_bound(" + std::to_string(bits) + "), which is not supported");
+    }
     Type type{.kind = Kind::kEnum, .name = names_.claim(lexer_.name("an enum's name")), .least_bytes = 4};
     std::set<std::string> full_names{type.name};
     std::int64_t value = 0;
     lexer_.expect("{");
     do {
-      if (type.enumerators.size() == kMaxEnumerators) lexer_.fail(atMost(kMaxEnumerators, "enumerators"), "more");
-      const Annotations marks = annotations();
+      if (type.enumerators.size() == kMaxEnumerators) lexer_.failBeyond(kMaxEnumerators, "enumerators");
+      const Annotations marks = annotations_.read();
       const std::string name = lexer_.name("an enumerator");
       if (!full_names.insert(names_.claim(name)).second) lexer_.fail("a new name", "'" + name + "' again");
-      value = lexer_.accept("=") ? anyEnumerator() : marks.value.value_or(value);
+      value = lexer_.accept("=") ? enumerator() : marks.value.value_or(value);
       if (!type.enumerators.emplace(value++, name).second)
         lexer_.fail("each value once", "that of '" + name + "' again");
     } while (lexer_.accept(","));
@@ -317,8 +212,8 @@ class IdlParser {
         type.default_member = member;
       } else {
         lexer_.expect("case");
-        const std::int64_t value = names_.value(*type.members.front().type).value();
-        if (type.labels.size() == kMaxMembers) lexer_.fail(atMost(kMaxMembers, "labels"), "more");
+        const auto value = static_cast<std::int64_t>(values_.value(*type.members.front().type).value());
+        if (type.labels.size() == kMaxMembers) lexer_.failBeyond(kMaxMembers, "labels");
         if (std::ranges::count(type.labels, value, &Label::value) > 0) lexer_.fail("each label once", "one again");
         type.labels.push_back({value, member});
       }
@@ -332,11 +227,10 @@ class IdlParser {
     Type type{.kind = Kind::kUnion, .name = names_.claim(short_name)};
     lexer_.expect("switch");
     lexer_.expect("(");
-    (void)annotations();
+    (void)annotations_.read();
     const Type* discriminator = typeName();
-    const Kind kind = discriminator->kind;
-    if (kind != Kind::kEnum && kind != Kind::kBoolean && !isInteger(kind)) {
-      lexer_.fail("a switch on an enum, a boolean or an integer", "another type");
+    if (!isDiscriminator(discriminator->kind)) {
+      lexer_.fail("a switch on an enum, a boolean, a character or an integer", "another type");
     }
     lexer_.expect(")");
     type.least_bytes = discriminator->least_bytes;
@@ -344,7 +238,7 @@ class IdlParser {
     lexer_.expect("{");
     do {
       labels(type);
-      const Annotations marks = annotations();
+      const Annotations marks = annotations_.read();
       auto [name, declared] = declarator(typeName());
       addMember(type, {std::move(name), declared, marks.unit, marks.is_key});
       lexer_.expect(";");
@@ -356,23 +250,23 @@ class IdlParser {
     const Type* type = typeName();
     do {
       const auto [name, declared] = declarator(type);
-      if (names_.size() >= kMaxDefinitions) lexer_.fail(atMost(kMaxDefinitions, "names"), "more");
+      if (names_.size() >= kMaxDefinitions) lexer_.failBeyond(kMaxDefinitions, "names");
       names_.addType(names_.claim(name), declared);
     } while (lexer_.accept(","));
   }
 
   void constant() {
     const Type* type = typeName();
-    if (type->kind > Kind::kEnum || type->kind == Kind::kOctet || type->kind == Kind::kChar) {
-      lexer_.fail("a constant that is a number, a boolean, a string or of an enum", "one of another type");
+    if (type->kind > Kind::kEnum) {
+      lexer_.fail("a constant that is a number, a boolean, a character, a string or of an enum", "one of another type");
     }
     const std::string name = names_.claim(lexer_.name("a constant's name"));
     lexer_.expect("=");
-    names_.addConstant(name, {type, names_.value(*type)});
+    names_.addConstant(name, {type, values_.value(*type)});
   }
 
   void module(unsigned depth) {
-    if (depth == kMaxDepth) lexer_.fail(atMost(kMaxDepth, "modules within each other"), "more");
+    if (depth == kMaxDepth) lexer_.failBeyond(kMaxDepth, "modules within each other");
     const std::string outer = names_.enter(lexer_.name("a module's name"));
     lexer_.expect("{");
     while (!atEnd() && !lexer_.is("}")) definition(depth + 1);
@@ -399,8 +293,7 @@ class IdlParser {
       problem = error.what();
     }
     if (problem.empty()) return;
-    if (set_.problems_.size() == kMaxProblems)
-      lexer_.fail(atMost(kMaxProblems, "definitions that cannot be read"), "more");
+    if (set_.problems_.size() == kMaxProblems) lexer_.failBeyond(kMaxProblems, "definitions that cannot be read");
     const std::size_t index = set_.problems_.size();
     set_.problems_.push_back({"", std::move(problem)});
     set_.problems_[index].definition = giveUp(begin, scope, index);
@@ -414,7 +307,7 @@ class IdlParser {
     std::string name;
     for (const std::string& one : skipDefinition()) {
       name = scope + one;
-      if (names_.size() >= kMaxDefinitions) lexer_.fail(atMost(kMaxDefinitions, "names"), "more");
+      if (names_.size() >= kMaxDefinitions) lexer_.failBeyond(kMaxDefinitions, "names");
       if (name.size() <= kMaxNameBytes) names_.addUnusable(name, problem);
     }
     return name;
@@ -430,6 +323,7 @@ class IdlParser {
     for (bool is_first = true;; is_first = false) {
       const Token token = lexer_.token();
       const bool ends = lexer_.is(";") && braces == 0;
+      if (lexer_.acceptTwice("<")) continue;  // a shift
       if (token.kind == Token::Kind::kEnd || (lexer_.is("}") && braces == 0 && !is_first)) return names;
       is_typedef = is_typedef || (within == 0 && lexer_.is("typedef"));
       const auto isOneOf = [&](std::string_view signs) {
@@ -448,10 +342,11 @@ class IdlParser {
   }
 
   void define(unsigned depth) {
-    if (annotations().is_declaration) {
+    const Annotations marks = annotations_.read();
+    if (marks.is_declaration) {
       (void)lexer_.name("an annotation's name");
       lexer_.expect("{");
-      skipTo("}", "{");
+      lexer_.skipTo("}", "{");
     } else if (lexer_.accept("module")) {
       module(depth);
     } else if (lexer_.accept("struct")) {
@@ -459,7 +354,7 @@ class IdlParser {
     } else if (lexer_.accept("union")) {
       unite();
     } else if (lexer_.accept("enum")) {
-      enumeration();
+      enumeration(marks.bit_bound.value_or(kBitsOfEnum));
     } else if (lexer_.accept("typedef")) {
       typeDefinition();
     } else if (lexer_.accept("const")) {
@@ -473,12 +368,16 @@ class IdlParser {
   IdlLexer lexer_;
   TypeSet set_;
   IdlNames names_{lexer_, set_.names_, set_.unusable_};
+  IdlValues values_{lexer_, names_};
+  IdlAnnotations annotations_{lexer_, values_};
   std::map<std::string_view, const Type*> primitives_;
   unsigned nesting_ = 0;
 };
 
 TypeSet parseIdl(std::string_view text) {
-  if (text.size() > kMaxTextBytes) failAt(1, atMost(kMaxTextBytes, "bytes"), std::to_string(text.size()));
+  if (text.size() > kMaxTextBytes) {
+    failAt(1, "at most " + std::to_string(kMaxTextBytes) + " bytes", std::to_string(text.size()));
+  }
   return IdlParser(text).parse();
 }
 

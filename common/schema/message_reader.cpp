@@ -35,6 +35,15 @@ bool isBytes(const Type& type) {
   return (type.kind == Kind::kSequence || type.kind == Kind::kArray) && type.element->kind == Kind::kOctet;
 }
 
+/// What a union's labels are compared with; of a character its code.
+std::int64_t labelOf(const Value& discriminator) {
+  if (const auto* flag = std::get_if<bool>(&discriminator)) return static_cast<std::int64_t>(*flag);
+  if (const auto* natural = std::get_if<std::uint64_t>(&discriminator)) return static_cast<std::int64_t>(*natural);
+  if (const auto* text = std::get_if<std::string_view>(&discriminator))
+    return static_cast<unsigned char>(text->front());
+  return std::get<std::int64_t>(discriminator);
+}
+
 template <class Number>
 Number reversed(Number value) {
   auto bytes = std::bit_cast<std::array<std::byte, sizeof(Number)>>(value);
@@ -130,11 +139,7 @@ void MessageReader::read(Item& item, Level* parent) {
     item.what = Item::What::kValue;
     item.value = valueOf(type);
     if (parent == nullptr || parent->type->kind != Kind::kUnion || item.index != 0) return;
-    const auto* flag = std::get_if<bool>(&item.value);
-    const auto* natural = std::get_if<std::uint64_t>(&item.value);
-    parent->chosen = chosenMember(*parent->type, flag != nullptr      ? static_cast<std::int64_t>(*flag)
-                                                 : natural != nullptr ? static_cast<std::int64_t>(*natural)
-                                                                      : std::get<std::int64_t>(item.value));
+    parent->chosen = chosenMember(*parent->type, labelOf(item.value));
     parent->count = parent->chosen == nullptr ? 1 : 2;
     return;
   }

@@ -227,8 +227,8 @@ TEST(IdlParser, SaysTheLineWhatWasExpectedAndWhatWasFound) {
   EXPECT_EQ(errorOf("\n/* never ends"), "line 2: " + definition + "a comment without its end");
   EXPECT_EQ(errorOf("\"never ends\n"), "line 1: " + definition + "a string without its end on the line");
   EXPECT_EQ(errorOf("\x81"), "line 1: " + definition + "a character that has no meaning in IDL (code 129)");
-  EXPECT_EQ(errorOf("struct S { double a[0x10]; };"),
-            "line 1: expected a whole number from 1 to 4294967295, found '0x10'");
+  EXPECT_EQ(errorOf("struct S { double a[1.5]; };"),
+            "line 1: expected a whole number from 1 to 4294967295, found '1.5'");
 }
 
 // --- what cannot be used costs itself and what uses it
@@ -238,7 +238,7 @@ TEST(IdlParser, ADefinitionThatCannotBeUsedCostsThoseThatUseIt) {
                                  "struct Odd { map<long, string> a; };",
                                  "struct Odd { any a; };",
                                  "struct Odd { long double a; };",
-                                 "struct Odd { long a[2 * 3]; };",
+                                 "struct Odd { long a[2 / 0]; };",
                                  "struct Odd { fixed<5, 2> a; };",
                                  "struct Odd { @optional long a; };",
                                  "@mutable struct Odd { long a; };",
@@ -251,12 +251,13 @@ TEST(IdlParser, ADefinitionThatCannotBeUsedCostsThoseThatUseIt) {
                                  "bitmask Odd { X, Y };",
                                  "@bit_bound(8) bitset Odd { bitfield<3> a; };",
                                  "@bit_bound(8) enum Odd { A };",
-                                 "enum Odd { A = 1 << 3 };",
+                                 "enum Odd { A = 1 << 64 };",
                                  "interface Odd { void call(in long a); };",
                                  "valuetype Odd { public long a; };",
                                  "exception Odd { long a; };",
                                  "native Odd;",
-                                 "union Odd switch (char) { case 'a': long a; };",
+                                 "union Odd switch (float) { case 1: long a; };",
+                                 "typedef long Other[1 << 1][0], Odd;",
                                  "typedef map<long, long> Odd;",
                                  "@mine typedef wstring Other, Odd[3];",
                                  "typedef sequence<wchar, 4> Odd;",
@@ -283,7 +284,7 @@ TEST(IdlParser, ADefinitionThatCannotBeUsedCostsThoseThatUseIt) {
 TEST(IdlParser, AConstantThatCannotBeUsedIsNoOther) {
   const TypeSet types = parseIdl(
       "const long N = 2; struct T { long a; };\n"
-      "module m {\n  const long N = 1 + 1;\n  const wchar W = 'a';\n  bitmask T { X };\n"
+      "module m {\n  const long N = 1 / 0;\n  const wchar W = 'a';\n  bitmask T { X };\n"
       "  struct S { long a[N]; }; struct U { T a; }; struct V { ::T a[::N]; };\n};");
   EXPECT_EQ(types.find("m::S"), nullptr) << "the outer N is another one";
   EXPECT_EQ(types.find("m::U"), nullptr) << "the outer T is another one";
@@ -338,10 +339,9 @@ TEST(IdlParser, RefusesWhatHasNoMeaning) {
                            "struct S { long a[0]; };",
                            "struct S { long a[-1]; };",
                            "struct S { long a[2.5]; };",
-                           "struct S { long a[010]; };",
                            "struct S { string<5000000000> a; };",
                            "const string N = \"3\"; struct S { long a[N]; };",
-                           "const octet N = 3;",
+                           "const octet N = 300;",
                            "const long N = 3.5;",
                            "const short N = 40000;",
                            "const long N = M;",
