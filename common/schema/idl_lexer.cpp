@@ -10,12 +10,12 @@
 namespace baton::schema {
 namespace {
 
-// Words with a meaning of their own, those of what is not supported too: nothing can be called so.
-constexpr std::array<std::string_view, 38> kKeywords{
-    "module", "struct", "union", "switch",  "case",    "default", "enum",      "typedef",  "const",  "sequence",
-    "string", "TRUE",   "FALSE", "boolean", "octet",   "char",    "int8",      "uint8",    "int16",  "uint16",
-    "int32",  "uint32", "int64", "uint64",  "short",   "long",    "unsigned",  "float",    "double", "wstring",
-    "wchar",  "fixed",  "map",   "any",     "bitmask", "bitset",  "interface", "valuetype"};
+// Words that nothing is called by. Those that IDL has only had since 4.0 or outside of types are names where a name
+// stands: OccupancyGrid map.
+constexpr std::array<std::string_view, 23> kKeywords{"module",   "struct",  "union",   "switch",   "case",   "default",
+                                                     "enum",     "typedef", "const",   "sequence", "string", "wstring",
+                                                     "char",     "wchar",   "boolean", "octet",    "short",  "long",
+                                                     "unsigned", "float",   "double",  "TRUE",     "FALSE"};
 
 bool isLetter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
@@ -125,9 +125,16 @@ void IdlLexer::expect(std::string_view text) {
   if (!accept(text)) fail("'" + std::string(text) + "'");
 }
 
+bool isKeyword(std::string_view word) { return std::ranges::count(kKeywords, word) > 0; }
+
+std::string_view unescaped(std::string_view word) {
+  const bool is_escaped = word.size() > 1 && word.front() == '_' && word[1] != '_' && !isDigit(word[1]);
+  return is_escaped ? word.substr(1) : word;
+}
+
 std::string IdlLexer::name(const std::string& what) {
-  if (token_.kind != Token::Kind::kWord || std::ranges::count(kKeywords, token_.text) > 0) fail(what);
-  std::string name(token_.text);
+  if (token_.kind != Token::Kind::kWord || isKeyword(token_.text)) fail(what);
+  std::string name(unescaped(token_.text));
   advance();
   return name;
 }

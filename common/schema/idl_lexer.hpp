@@ -27,6 +27,10 @@ struct Token {
 /// "line 3: expected ';', found 'struct'", thrown as IdlError.
 [[noreturn]] void failAt(std::size_t line, const std::string& expected, const std::string& found);
 
+[[nodiscard]] bool isKeyword(std::string_view word);
+/// A name without the '_' that keeps it from being taken for a keyword: "_struct" is called struct.
+[[nodiscard]] std::string_view unescaped(std::string_view word);
+
 /// Cuts a text into tokens and hands them out one by one; white space, comments, #pragma and line marks are skipped.
 /// Throws IdlError for what is not expected. A copy goes on where the original was.
 class IdlLexer {
@@ -47,9 +51,9 @@ class IdlLexer {
   bool acceptTwice(std::string_view sign);
   /// Takes it.
   void expect(std::string_view text);
-  /// Takes a word that is not a keyword.
+  /// Takes a word that is not a keyword; returned without what escapes it.
   [[nodiscard]] std::string name(const std::string& what);
-  /// Takes "a::b" or "::a::b"; returned as written.
+  /// Takes "a::b" or "::a::b"; returned in this form.
   [[nodiscard]] std::string scopedName(const std::string& what);
 
   /// Takes all up to the end of what was opened, with all that is opened within.

@@ -44,6 +44,7 @@ constexpr std::array kPrimitives{
     Primitive{"string", Kind::kString, 4},
 };
 
+constexpr std::array<std::string_view, 5> kUnsupported{"wstring", "wchar", "fixed", "map", "any"};
 // An enum with fewer bits takes one byte or two in the payloads of some vendors and four in those of others.
 constexpr std::int64_t kMostBitsOfShortEnum = 16, kBitsOfEnum = 32;
 
@@ -83,12 +84,21 @@ class IdlParser {
 
   // --- types by name
 
+  /// Whether the text itself has declared the word that comes next, though IDL knows it too: int8, map.
+  bool isOwnName(const std::string& word) {
+    IdlLexer ahead = lexer_;
+    ahead.advance();
+    return !isKeyword(word) && (ahead.is("::") || names_.hasType(word));
+  }
+
   const Type* typeName() {
     if (lexer_.accept("sequence")) return sequence();
-    const bool is_primitive =
-        std::ranges::any_of(kPrimitives, [&](const Primitive& one) { return lexer_.is(one.words); });
-    if (!is_primitive && !lexer_.is("unsigned")) return names_.type();
-    std::string words(lexer_.token().text);
+    const bool is_word = lexer_.token().kind == Token::Kind::kWord;
+    std::string words(is_word ? lexer_.token().text : "");
+    const bool is_unsupported = std::ranges::count(kUnsupported, words) > 0;
+    const bool is_primitive = words == "unsigned" || std::ranges::count(kPrimitives, words, &Primitive::words) > 0;
+    if ((!is_unsupported && !is_primitive) || isOwnName(words)) return names_.type();
+    if (is_unsupported) lexer_.fail("a type that all encode alike", "'" + words + "', which is not supported");
     lexer_.advance();
     if (words == "unsigned") {
       if (!lexer_.is("short") && !lexer_.is("long")) lexer_.fail("'short' or 'long'");
@@ -335,7 +345,7 @@ class IdlParser {
       if (isOneOf("})]>") && within > 0) --within;
       braces += lexer_.is("{") ? 1 : 0;
       braces -= lexer_.is("}") && braces > 0 ? 1 : 0;
-      word = token.kind == Token::Kind::kWord ? token.text : "";
+      word = token.kind == Token::Kind::kWord ? unescaped(token.text) : "";
       lexer_.advance();
       if (ends) return names;
     }

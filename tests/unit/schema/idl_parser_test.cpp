@@ -292,7 +292,8 @@ TEST(IdlParser, AConstantThatCannotBeUsedIsNoOther) {
   ASSERT_EQ(types.problems().size(), 3U);
   EXPECT_EQ(types.problemOf("m::S")->definition, "m::N");
   EXPECT_EQ(types.problemOf("m::S")->text.rfind("line 3: ", 0), 0U) << types.problemOf("m::S")->text;
-  EXPECT_EQ(types.problemOf("m::W")->text, "line 4: expected a type, found 'wchar'");
+  EXPECT_EQ(types.problemOf("m::W")->text,
+            "line 4: expected a type that all encode alike, found 'wchar', which is not supported");
   EXPECT_EQ(types.problemOf("m::U")->definition, "m::T");
 }
 
