@@ -10,6 +10,7 @@
 #include "schema/idl_annotations.hpp"
 #include "schema/idl_lexer.hpp"
 #include "schema/idl_names.hpp"
+#include "schema/idl_preprocessor.hpp"
 #include "schema/idl_values.hpp"
 #include "schema/limits.hpp"
 
@@ -388,7 +389,8 @@ TypeSet parseIdl(std::string_view text) {
   if (text.size() > kMaxTextBytes) {
     failAt(1, "at most " + std::to_string(kMaxTextBytes) + " bytes", std::to_string(text.size()));
   }
-  return IdlParser(text).parse();
+  const std::string plain = preprocessed(text);
+  return IdlParser(plain).parse();
 }
 
 }  // namespace baton::schema

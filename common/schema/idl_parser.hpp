@@ -12,8 +12,9 @@
 /// characters, long double, maps, bit masks.
 ///
 /// What is refused costs the definition it is in, and those that use it: they are no types, TypeSet::problemOf() says
-/// why, and the rest of the text is read. Forward declarations, #pragma and, between definitions, other lines for a
-/// preprocessor are skipped: the text is read as if nothing had been included, defined or left out.
+/// why, and the rest of the text is read. What #define, #if and #ifdef say is done before (idl_preprocessor.hpp);
+/// forward declarations, #pragma and, between definitions, other lines for a preprocessor are skipped: nothing is
+/// included.
 #pragma once
 
 #include <string_view>

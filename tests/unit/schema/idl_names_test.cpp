@@ -14,7 +14,7 @@ using test::decoded;
 
 TEST(IdlNames, AnUnderscoreThatEscapesIsNoPartOfTheName) {
   EXPECT_EQ(decoded("module _module { struct _union { octet _struct; octet _a; }; enum _enum { _case }; };"
-                    "typedef _module::_union _T; struct _S { T t; ::module::_enum _long[1]; };"
+                    "typedef _module::_union _T; struct _S { T t; ::_module::_enum _long[1]; };"
                     "struct Last { octet a; };",
                     {1, 2, 0, 0, 3, 0, 0, 0}),
             "t.struct=1 t.a=2 long[0]=3");

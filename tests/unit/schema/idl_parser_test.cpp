@@ -246,7 +246,7 @@ TEST(IdlParser, ADefinitionThatCannotBeUsedCostsThoseThatUseIt) {
                                  "struct Odd : Good { long b; };",
                                  "struct Odd { Elsewhere a; };",
                                  "struct Odd { long a } ;",
-                                 "struct Odd {\n#ifdef X\n long a;\n#endif\n long b; };",
+                                 "struct Odd {\n#if X > 3\n long a;\n#endif\n long b; };",
                                  "struct Odd { long a; \x01 };",
                                  "bitmask Odd { X, Y };",
                                  "@bit_bound(8) bitset Odd { bitfield<3> a; };",
