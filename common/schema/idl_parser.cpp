@@ -167,10 +167,23 @@ class IdlParser {
     return added;
   }
 
+  /// The base's members come first, as in a payload.
+  void inherit(Type& type) {
+    const std::size_t line = lexer_.token().line;
+    const Type& base = *names_.type();
+    if (base.kind != Kind::kStruct) failAt(line, "a struct to inherit from", "another type");
+    for (const Member& one : base.members) inherited_bytes_ += sizeof one + one.name.size() + one.unit.size();
+    if (inherited_bytes_ > kMaxInheritedBytes) lexer_.failBeyond(kMaxInheritedBytes, "bytes of inherited members");
+    type.members = base.members;
+    type.depth = base.depth;
+    type.least_bytes = base.least_bytes;
+  }
+
   void structure() {
     const std::string short_name = lexer_.name("a struct's name");
     if (lexer_.is(";")) return;  // it is to come
     Type type{.kind = Kind::kStruct, .name = names_.claim(short_name)};
+    if (lexer_.accept(":")) inherit(type);
     lexer_.expect("{");
     do {
       const Annotations marks = annotations_.read();
@@ -383,6 +396,7 @@ class IdlParser {
   IdlAnnotations annotations_{lexer_, values_};
   std::map<std::string_view, const Type*> primitives_;
   unsigned nesting_ = 0;
+  std::size_t inherited_bytes_ = 0;
 };
 
 TypeSet parseIdl(std::string_view text) {

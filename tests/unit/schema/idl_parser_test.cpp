@@ -9,9 +9,12 @@
 #include "msg/idl_text.hpp"
 #include "schema/error.hpp"
 #include "schema/limits.hpp"
+#include "unit/schema/decoded.hpp"
 
 namespace baton::schema {
 namespace {
+
+using test::decoded;
 
 /// What is wrong with the text, or with its first definition that cannot be used; empty for a good text.
 std::string errorOf(const std::string& text) {
@@ -105,6 +108,23 @@ TEST(IdlParser, ArraysOfManyDimensionsHaveTheFirstIndexOutside) {
   EXPECT_EQ(rows.element->element->kind, Kind::kDouble);
   EXPECT_EQ(rows.least_bytes, 96U);
   EXPECT_EQ(types.find("S")->members[1].type->kind, Kind::kDouble);
+}
+
+TEST(IdlParser, AStructBeginsWithTheMembersOfItsBase) {
+  const std::string text =
+      "module m { struct A { @key octet id; @unit(\"m\") double x; }; typedef A Base; };"
+      "struct B : m::Base { octet b[2]; }; @final struct S : ::B { short c; };";
+  EXPECT_EQ(decoded(text, {5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xF0, 0x3F, 7, 8, 9, 0}),
+            "id=5 x=1 b=2 octets c=9");
+  const TypeSet types = parseIdl(text);
+  const Type& s = *types.find("S");
+  EXPECT_TRUE(s.members[0].is_key);
+  EXPECT_EQ(s.members[1].unit, "m");
+  EXPECT_EQ(s.least_bytes, 13U);
+  EXPECT_EQ(decoded("@mutable struct A { long a; }; struct S : A { long b; };", {}).substr(0, 31),
+            "A: line 1: expected a final or ");
+  EXPECT_EQ(errorOf("enum E { X };\nstruct S : E { long b; };"),
+            "line 2: expected a struct to inherit from, found another type");
 }
 
 TEST(IdlParser, TypedefsAreTheirTypes) {
@@ -243,7 +263,10 @@ TEST(IdlParser, ADefinitionThatCannotBeUsedCostsThoseThatUseIt) {
                                  "struct Odd { @optional long a; };",
                                  "@mutable struct Odd { long a; };",
                                  "struct Odd {};",
-                                 "struct Odd : Good { long b; };",
+                                 "struct Odd : Nowhere { long b; };",
+                                 "enum E { X }; struct Odd : E { long b; };",
+                                 "struct Odd : Good { double a; };",
+                                 "struct Odd : Odd { long b; };",
                                  "struct Odd { Elsewhere a; };",
                                  "struct Odd { long a } ;",
                                  "struct Odd {\n#if X > 3\n long a;\n#endif\n long b; };",
@@ -325,9 +348,8 @@ TEST(IdlParser, RefusesWhatWouldChangeAPayload) {
        {"@mutable struct S { long a; };", "@extensibility(MUTABLE) struct S { long a; };",
         "@Extensibility(MUTABLE_EXTENSIBILITY) struct S { long a; };", "struct S { @optional long a; };",
         "struct S { @key @Optional long a; };", "struct S { @non_serialized long a; };", "@bit_bound(8) enum E { A };",
-        "@bit_bound(16) enum E { A };", "struct A { long a; }; struct B : A { long b; };", "struct S { wstring a; };",
-        "struct S { long double a; };", "struct S { map<long, long> a; };", "bitmask B { X };",
-        "struct S { any a; };"}) {
+        "@bit_bound(16) enum E { A };", "struct S { wstring a; };", "struct S { long double a; };",
+        "struct S { map<long, long> a; };", "bitmask B { X };", "struct S { any a; };"}) {
     EXPECT_NE(errorOf(text), "") << text;
   }
 }
@@ -402,6 +424,15 @@ TEST(IdlParser, EveryCountHasItsLimit) {
   EXPECT_THROW((void)parseIdl(repeat("any;", kMaxProblems + 1)), IdlError);
   EXPECT_THROW((void)parseIdl(inModules(kMaxDepth, repeat("};", kMaxProblems + 100))), IdlError);
   EXPECT_THROW((void)parseIdl("bitmask B { X };" + numbered("typedef B A", ";", kMaxDefinitions + 1)), IdlError);
+  // A little text that has many members.
+  const std::string base = "struct A { " + numbered("long a", ";", kMaxMembers) + "};";
+  EXPECT_NE(errorOf(base + numbered("struct B", " : A { long b; };", 1)), "");
+  const std::string wide = "struct A { " + numbered("long a", ";", kMaxMembers - 1) + "};";
+  EXPECT_EQ(errorOf(wide + numbered("struct B", " : A { long b; };", 100)), "");
+  EXPECT_NE(errorOf(wide + numbered("struct B", " : A { long b; };", 1'000)), "");
+  EXPECT_NE(errorOf("struct A { long " + std::string(kMaxTextBytes / 2, 'a') + "; };" +
+                    numbered("struct B", " : A { long b; };", 100)),
+            "");
   // Types within each other, in every way there is.
   EXPECT_NE(errorOf("struct S { long a" + repeat("[1]", kMaxDepth + 1) + "; };"), "");
   EXPECT_NE(
