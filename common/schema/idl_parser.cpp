@@ -23,29 +23,20 @@ struct Primitive {
   std::uint64_t bytes;
 };
 constexpr std::array kPrimitives{
-    Primitive{"boolean", Kind::kBoolean, 1},
-    Primitive{"octet", Kind::kOctet, 1},
-    Primitive{"char", Kind::kChar, 1},
-    Primitive{"int8", Kind::kInt8, 1},
-    Primitive{"uint8", Kind::kUint8, 1},
-    Primitive{"int16", Kind::kInt16, 2},
-    Primitive{"short", Kind::kInt16, 2},
-    Primitive{"uint16", Kind::kUint16, 2},
-    Primitive{"unsigned short", Kind::kUint16, 2},
-    Primitive{"int32", Kind::kInt32, 4},
-    Primitive{"long", Kind::kInt32, 4},
-    Primitive{"uint32", Kind::kUint32, 4},
-    Primitive{"unsigned long", Kind::kUint32, 4},
-    Primitive{"int64", Kind::kInt64, 8},
-    Primitive{"long long", Kind::kInt64, 8},
-    Primitive{"uint64", Kind::kUint64, 8},
-    Primitive{"unsigned long long", Kind::kUint64, 8},
-    Primitive{"float", Kind::kFloat, 4},
-    Primitive{"double", Kind::kDouble, 8},
+    Primitive{"boolean", Kind::kBoolean, 1}, Primitive{"octet", Kind::kOctet, 1},
+    Primitive{"char", Kind::kChar, 1},       Primitive{"wchar", Kind::kWideChar, 2},
+    Primitive{"int8", Kind::kInt8, 1},       Primitive{"uint8", Kind::kUint8, 1},
+    Primitive{"int16", Kind::kInt16, 2},     Primitive{"short", Kind::kInt16, 2},
+    Primitive{"uint16", Kind::kUint16, 2},   Primitive{"unsigned short", Kind::kUint16, 2},
+    Primitive{"int32", Kind::kInt32, 4},     Primitive{"long", Kind::kInt32, 4},
+    Primitive{"uint32", Kind::kUint32, 4},   Primitive{"unsigned long", Kind::kUint32, 4},
+    Primitive{"int64", Kind::kInt64, 8},     Primitive{"long long", Kind::kInt64, 8},
+    Primitive{"uint64", Kind::kUint64, 8},   Primitive{"unsigned long long", Kind::kUint64, 8},
+    Primitive{"float", Kind::kFloat, 4},     Primitive{"double", Kind::kDouble, 8},
     Primitive{"string", Kind::kString, 4},
 };
 
-constexpr std::array<std::string_view, 5> kUnsupported{"wstring", "wchar", "fixed", "map", "any"};
+constexpr std::array<std::string_view, 4> kUnsupported{"wstring", "fixed", "map", "any"};
 // An enum with fewer bits takes one byte or two in the payloads of some vendors and four in those of others.
 constexpr std::int64_t kMostBitsOfShortEnum = 16, kBitsOfEnum = 32;
 
@@ -53,8 +44,8 @@ constexpr std::int64_t kMostElements = std::numeric_limits<std::uint32_t>::max()
 
 /// What a union can be switched on.
 bool isDiscriminator(Kind kind) {
-  return kind == Kind::kEnum || kind == Kind::kBoolean || kind == Kind::kOctet || kind == Kind::kChar ||
-         isInteger(kind);
+  return kind == Kind::kEnum || kind == Kind::kBoolean || kind == Kind::kOctet || isInteger(kind) ||
+         kind == Kind::kChar || kind == Kind::kWideChar;
 }
 
 }  // namespace

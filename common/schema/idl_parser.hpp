@@ -1,10 +1,10 @@
 /// Reads the self-contained OMG IDL text that recordings carry (MCAP schema encoding "omgidl").
 ///
-/// Understood: modules; structs, derived ones too; enums, with values of their own or not; unions on an enum, a boolean,
-/// a character or an integer; sequences and strings, bounded or not; arrays of any number of dimensions; typedefs;
-/// constants; boolean, octet, char, int8 to uint64, short to unsigned long long, float, double. Sizes, bounds, labels
-/// and values are constant expressions (idl_values.hpp). A name may be escaped (_struct), and be a word that IDL knows
-/// elsewhere (map, any, int8).
+/// Understood: modules; structs, derived ones too; enums, with values of their own or not; unions on an enum, a
+/// boolean, a character or an integer; sequences and strings, bounded or not; arrays of any number of dimensions;
+/// typedefs; constants; boolean, octet, char, int8 to uint64, short to unsigned long long, float, double. Sizes,
+/// bounds, labels and values are constant expressions (idl_values.hpp). A name may be escaped (_struct), and be a word
+/// that IDL knows elsewhere (map, any, int8).
 ///
 /// Of annotations @unit, @key and @value are kept, and those that change how a payload is read are refused by name:
 /// @mutable, @optional, @non_serialized, and @bit_bound of an enum, where vendors differ. All others (@final and

@@ -75,7 +75,7 @@ std::optional<Number> characterCode(std::string_view text) {
   static constexpr std::string_view kNames = "ntvbrfa\\?'\"", kMeanings = "\n\t\v\b\r\f\a\\?'\"";
   const std::size_t name = kNames.find(text[1]);
   if (text.size() == 2 && name != std::string_view::npos) return static_cast<unsigned char>(kMeanings[name]);
-  if (text[1] == 'x') return escapedCode(text.substr(2), 2, 16);
+  if (text[1] == 'x') return escapedCode(text.substr(2), 4, 16);
   if (text[1] == 'u') return escapedCode(text.substr(2), 4, 16);
   return escapedCode(text.substr(1), 3, 8);
 }
@@ -122,13 +122,18 @@ std::optional<Number> IdlValues::value(const Type& type) {
   if (type.kind == Kind::kBoolean && lexer_.accept("TRUE")) return 1;
   if (type.kind == Kind::kBoolean && lexer_.accept("FALSE")) return 0;
   if (type.kind == Kind::kChar && lexer_.token().kind == Token::Kind::kCharacter) return character(0xFF);
+  if (type.kind == Kind::kWideChar && (lexer_.accept("L") || lexer_.token().kind == Token::Kind::kCharacter)) {
+    return character(0xFFFF);
+  }
   return constantOf(type);
 }
 
 /// Takes a character whose code is no larger.
 Number IdlValues::character(Number largest) {
-  const std::optional<Number> code = characterCode(lexer_.token().text);
-  if (!code || *code > largest) lexer_.fail("a character of the type");
+  const Token token = lexer_.token();
+  const std::optional<Number> code = characterCode(token.text);
+  const bool is_character = token.kind == Token::Kind::kCharacter && code && *code <= largest;
+  if (!is_character) lexer_.fail("a character of the type");
   lexer_.advance();
   return *code;
 }

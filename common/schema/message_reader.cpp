@@ -118,6 +118,7 @@ Value MessageReader::valueOf(const Type& type) {
     case Kind::kUint8: return std::uint64_t{number<std::uint8_t>()};
     case Kind::kInt8: return std::int64_t{number<std::int8_t>()};
     case Kind::kInt16: return std::int64_t{number<std::int16_t>()};
+    case Kind::kWideChar:
     case Kind::kUint16: return std::uint64_t{number<std::uint16_t>()};
     case Kind::kInt32: return std::int64_t{number<std::int32_t>()};
     case Kind::kUint32: return std::uint64_t{number<std::uint32_t>()};

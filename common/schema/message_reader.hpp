@@ -23,8 +23,8 @@ namespace baton::schema {
 
 using Bytes = std::span<const std::byte>;
 
-/// Signed integers and enums are int64_t, unsigned ones and a single octet uint64_t, chars and strings text as it lies
-/// in the payload (whatever its encoding), sequences and arrays of octets bytes.
+/// Signed integers and enums are int64_t, unsigned ones, a wide character and a single octet uint64_t, chars and
+/// strings text as it lies in the payload (whatever its encoding), sequences and arrays of octets bytes.
 using Value = std::variant<bool, std::int64_t, std::uint64_t, float, double, std::string_view, Bytes>;
 
 struct Item {

@@ -16,6 +16,7 @@ enum class Kind : std::uint8_t {
   kBoolean,
   kOctet,
   kChar,
+  kWideChar,
   kInt8,
   kUint8,
   kInt16,

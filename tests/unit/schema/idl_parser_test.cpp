@@ -73,25 +73,16 @@ TEST(IdlParser, KeepsNamesUnitsAndBounds) {
 
 TEST(IdlParser, ReadsEveryPrimitive) {
   const std::pair<const char*, Kind> primitives[]{
-      {"boolean", Kind::kBoolean},
-      {"octet", Kind::kOctet},
-      {"char", Kind::kChar},
-      {"int8", Kind::kInt8},
-      {"uint8", Kind::kUint8},
-      {"int16", Kind::kInt16},
-      {"short", Kind::kInt16},
-      {"uint16", Kind::kUint16},
-      {"unsigned short", Kind::kUint16},
-      {"int32", Kind::kInt32},
-      {"long", Kind::kInt32},
-      {"uint32", Kind::kUint32},
-      {"unsigned long", Kind::kUint32},
-      {"int64", Kind::kInt64},
-      {"long long", Kind::kInt64},
-      {"uint64", Kind::kUint64},
-      {"unsigned long long", Kind::kUint64},
-      {"float", Kind::kFloat},
-      {"double", Kind::kDouble},
+      {"boolean", Kind::kBoolean}, {"octet", Kind::kOctet},
+      {"char", Kind::kChar},       {"wchar", Kind::kWideChar},
+      {"int8", Kind::kInt8},       {"uint8", Kind::kUint8},
+      {"int16", Kind::kInt16},     {"short", Kind::kInt16},
+      {"uint16", Kind::kUint16},   {"unsigned short", Kind::kUint16},
+      {"int32", Kind::kInt32},     {"long", Kind::kInt32},
+      {"uint32", Kind::kUint32},   {"unsigned long", Kind::kUint32},
+      {"int64", Kind::kInt64},     {"long long", Kind::kInt64},
+      {"uint64", Kind::kUint64},   {"unsigned long long", Kind::kUint64},
+      {"float", Kind::kFloat},     {"double", Kind::kDouble},
       {"string", Kind::kString},
   };
   for (const auto& [words, kind] : primitives) {
@@ -283,7 +274,7 @@ TEST(IdlParser, ADefinitionThatCannotBeUsedCostsThoseThatUseIt) {
                                  "typedef long Other[1 << 1][0], Odd;",
                                  "typedef map<long, long> Odd;",
                                  "@mine typedef wstring Other, Odd[3];",
-                                 "typedef sequence<wchar, 4> Odd;",
+                                 "typedef sequence<wstring, 4> Odd;",
                                  "struct Odd { long a; }; struct Odd { long b; };"}) {
     SCOPED_TRACE(definition);
     const TypeSet types = parseIdl(std::string("module m { struct Good { long a; };\n") + definition +
@@ -307,7 +298,7 @@ TEST(IdlParser, ADefinitionThatCannotBeUsedCostsThoseThatUseIt) {
 TEST(IdlParser, AConstantThatCannotBeUsedIsNoOther) {
   const TypeSet types = parseIdl(
       "const long N = 2; struct T { long a; };\n"
-      "module m {\n  const long N = 1 / 0;\n  const wchar W = 'a';\n  bitmask T { X };\n"
+      "module m {\n  const long N = 1 / 0;\n  const wstring W = L\"a\";\n  bitmask T { X };\n"
       "  struct S { long a[N]; }; struct U { T a; }; struct V { ::T a[::N]; };\n};");
   EXPECT_EQ(types.find("m::S"), nullptr) << "the outer N is another one";
   EXPECT_EQ(types.find("m::U"), nullptr) << "the outer T is another one";
@@ -316,7 +307,7 @@ TEST(IdlParser, AConstantThatCannotBeUsedIsNoOther) {
   EXPECT_EQ(types.problemOf("m::S")->definition, "m::N");
   EXPECT_EQ(types.problemOf("m::S")->text.rfind("line 3: ", 0), 0U) << types.problemOf("m::S")->text;
   EXPECT_EQ(types.problemOf("m::W")->text,
-            "line 4: expected a type that all encode alike, found 'wchar', which is not supported");
+            "line 4: expected a type that all encode alike, found 'wstring', which is not supported");
   EXPECT_EQ(types.problemOf("m::U")->definition, "m::T");
 }
 

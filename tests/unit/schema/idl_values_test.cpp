@@ -106,7 +106,10 @@ TEST(IdlValues, CharactersAreLabelsAndConstants) {
   }
   EXPECT_EQ(decoded("union S switch (char) { case '\\xe9': octet a; };", {0xE9, 4}), "$discriminator=\xE9 a=4");
   EXPECT_EQ(decoded("union S switch (octet) { case 0xE9: octet a; };", {0xE9, 4}), "$discriminator=233 a=4");
-  for (const char* label : {"''", "'ab'", "'\\q'", "'\\x100'", "'\\400'", "\"a\"", "97"}) {
+  EXPECT_EQ(decoded("const wchar B = '\\u20ac'; union S switch (wchar) { case L'a': octet a; case B: octet b; };",
+                    {0xAC, 0x20, 4}),
+            "$discriminator=8364 b=4");
+  for (const char* label : {"''", "L'a'", "'\\u20ac'", "L", "'ab'", "'\\q'", "'\\x100'", "'\\400'", "\"a\"", "97"}) {
     EXPECT_NE(problemOf(std::string("union U switch (char) { case ") + label + ": octet a; };"), "") << label;
   }
 }
