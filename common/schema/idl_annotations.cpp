@@ -31,6 +31,8 @@ Annotations IdlAnnotations::read() {
       all.value = number(std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max());
     } else if (name == "bit_bound") {
       all.bit_bound = number(1, 64);
+    } else if (name == "position") {
+      all.position = number(0, 63);
     } else if (name == "extensibility") {
       expectPlain(extensibility());
     } else if (std::ranges::count(kMoving, name) > 0) {

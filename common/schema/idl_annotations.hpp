@@ -14,7 +14,8 @@ struct Annotations {
   std::string unit;
   bool is_key = false;
   std::optional<std::int64_t> value;      // of an enumerator
-  std::optional<std::int64_t> bit_bound;  // of an enum
+  std::optional<std::int64_t> bit_bound;  // of an enum or a bitmask
+  std::optional<std::int64_t> position;   // of a bit in a bitmask
   bool is_declaration = false;            // what follows says what an annotation is
 };
 

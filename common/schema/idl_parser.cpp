@@ -39,6 +39,7 @@ constexpr std::array kPrimitives{
 constexpr std::array<std::string_view, 4> kUnsupported{"wstring", "fixed", "map", "any"};
 // An enum with fewer bits takes one byte or two in the payloads of some vendors and four in those of others.
 constexpr std::int64_t kMostBitsOfShortEnum = 16, kBitsOfEnum = 32;
+constexpr std::int64_t kBitsOfBitmask = 32;
 
 constexpr std::int64_t kMostElements = std::numeric_limits<std::uint32_t>::max();  // of an array, sequence or string
 
@@ -151,6 +152,12 @@ class IdlParser {
     type.members.push_back(std::move(member));
   }
 
+  /// For a type that has no name of its own.
+  void addName(const std::string& full_name, const Type* type) {
+    if (names_.size() >= kMaxDefinitions) lexer_.failBeyond(kMaxDefinitions, "names");
+    names_.addType(full_name, type);
+  }
+
   const Type* finish(Type type) {
     const std::string name = type.name;
     const Type* added = add(std::move(type));
@@ -219,6 +226,27 @@ class IdlParser {
     }
   }
 
+  /// An unsigned integer of as many bits; what the bits are called is not kept.
+  void bitmask(std::int64_t bits) {
+    const Type* integer = primitives_.at(bits <= 8    ? "uint8"
+                                         : bits <= 16 ? "uint16"
+                                         : bits <= 32 ? "uint32"
+                                                      : "uint64");
+    const std::string name = names_.claim(lexer_.name("a bitmask's name"));
+    std::int64_t position = 0;
+    std::set<std::int64_t> positions;
+    lexer_.expect("{");
+    do {
+      position = annotations_.read().position.value_or(position);
+      (void)lexer_.name("a bit's name");
+      if (position >= bits) lexer_.fail("a bit below " + std::to_string(bits), std::to_string(position));
+      if (!positions.insert(position).second) lexer_.fail("each bit once", std::to_string(position) + " again");
+      ++position;
+    } while (lexer_.accept(","));
+    lexer_.expect("}");
+    addName(name, integer);
+  }
+
   void labels(Type& type) {
     const std::size_t member = type.members.size();
     do {
@@ -265,8 +293,7 @@ class IdlParser {
     const Type* type = typeName();
     do {
       const auto [name, declared] = declarator(type);
-      if (names_.size() >= kMaxDefinitions) lexer_.failBeyond(kMaxDefinitions, "names");
-      names_.addType(names_.claim(name), declared);
+      addName(names_.claim(name), declared);
     } while (lexer_.accept(","));
   }
 
@@ -370,12 +397,14 @@ class IdlParser {
       unite();
     } else if (lexer_.accept("enum")) {
       enumeration(marks.bit_bound.value_or(kBitsOfEnum));
+    } else if (lexer_.accept("bitmask")) {
+      bitmask(marks.bit_bound.value_or(kBitsOfBitmask));
     } else if (lexer_.accept("typedef")) {
       typeDefinition();
     } else if (lexer_.accept("const")) {
       constant();
     } else {
-      lexer_.fail("module, struct, union, enum, typedef or const");
+      lexer_.fail("module, struct, union, enum, bitmask, typedef or const");
     }
     lexer_.expect(";");
   }

@@ -219,6 +219,21 @@ TEST(IdlParser, EnumeratorsHaveTheirOwnValues) {
   EXPECT_NE(errorOf("enum E { @value(5000000000) A };"), "");
 }
 
+TEST(IdlParser, ABitMaskIsAnUnsignedIntegerOfItsBits) {
+  const std::string text =
+      "@bit_bound(8) bitmask A { X, Y, @position(value = 4) Z }; bitmask B { X };"
+      "module m { @bit_bound(9) bitmask A { @position(8) X }; @bit_bound(33) bitmask map { X, @position(32) @mine Y }; "
+      "};"
+      "typedef A Flags; struct S { Flags a; m::A b[1]; B c; m::map d; sequence<A> e; };";
+  EXPECT_EQ(decoded(text, {0x11, 0, 0, 1, 7, 0, 0, 0x80, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0x10}),
+            "a=17 b[0]=256 c=2147483655 d=4294967297 e[0]=16");
+  EXPECT_EQ(errorOf("@bit_bound(2) bitmask B { X, Y,\n Z };"), "line 2: expected a bit below 2, found 2");
+  EXPECT_EQ(errorOf("bitmask B { @position(3) X, @position(3) Y };"), "line 1: expected each bit once, found 3 again");
+  EXPECT_EQ(errorOf("@bit_bound(65) bitmask B { X };"), "line 1: expected a whole number from 1 to 64, found 65");
+  EXPECT_EQ(errorOf("@bit_bound(8) bitset B { bitfield<3> a; };"),
+            "line 1: expected module, struct, union, enum, bitmask, typedef or const, found 'bitset'");
+}
+
 TEST(IdlParser, WhatChangesAPayloadIsNamed) {
   EXPECT_EQ(errorOf("@extensibility(MUTABLE) struct S { long a; };"),
             "line 1: expected a final or an appendable type, found a mutable one, whose parameter lists are not "
@@ -234,7 +249,7 @@ TEST(IdlParser, SaysTheLineWhatWasExpectedAndWhatWasFound) {
   EXPECT_EQ(errorOf("struct S {\n  long a\n};"), "line 3: expected ';', found '}'");
   EXPECT_EQ(errorOf("struct S { T a; };"), "line 1: expected a type that was declared before, found 'T'");
   EXPECT_EQ(errorOf("struct S { long a;"), "line 1: expected a type, found the end of the text");
-  const std::string definition = "expected module, struct, union, enum, typedef or const, found ";
+  const std::string definition = "expected module, struct, union, enum, bitmask, typedef or const, found ";
   EXPECT_EQ(errorOf("\n/* never ends"), "line 2: " + definition + "a comment without its end");
   EXPECT_EQ(errorOf("\"never ends\n"), "line 1: " + definition + "a string without its end on the line");
   EXPECT_EQ(errorOf("\x81"), "line 1: " + definition + "a character that has no meaning in IDL (code 129)");
@@ -262,7 +277,8 @@ TEST(IdlParser, ADefinitionThatCannotBeUsedCostsThoseThatUseIt) {
                                  "struct Odd { long a } ;",
                                  "struct Odd {\n#if X > 3\n long a;\n#endif\n long b; };",
                                  "struct Odd { long a; \x01 };",
-                                 "bitmask Odd { X, Y };",
+                                 "@bit_bound(1) bitmask Odd { X, Y };",
+                                 "bitset Odd { bitfield<3> a; };",
                                  "@bit_bound(8) bitset Odd { bitfield<3> a; };",
                                  "@bit_bound(8) enum Odd { A };",
                                  "enum Odd { A = 1 << 64 };",
@@ -298,7 +314,7 @@ TEST(IdlParser, ADefinitionThatCannotBeUsedCostsThoseThatUseIt) {
 TEST(IdlParser, AConstantThatCannotBeUsedIsNoOther) {
   const TypeSet types = parseIdl(
       "const long N = 2; struct T { long a; };\n"
-      "module m {\n  const long N = 1 / 0;\n  const wstring W = L\"a\";\n  bitmask T { X };\n"
+      "module m {\n  const long N = 1 / 0;\n  const wstring W = L\"a\";\n  bitset T { X };\n"
       "  struct S { long a[N]; }; struct U { T a; }; struct V { ::T a[::N]; };\n};");
   EXPECT_EQ(types.find("m::S"), nullptr) << "the outer N is another one";
   EXPECT_EQ(types.find("m::U"), nullptr) << "the outer T is another one";
@@ -340,7 +356,7 @@ TEST(IdlParser, RefusesWhatWouldChangeAPayload) {
         "@Extensibility(MUTABLE_EXTENSIBILITY) struct S { long a; };", "struct S { @optional long a; };",
         "struct S { @key @Optional long a; };", "struct S { @non_serialized long a; };", "@bit_bound(8) enum E { A };",
         "@bit_bound(16) enum E { A };", "struct S { wstring a; };", "struct S { long double a; };",
-        "struct S { map<long, long> a; };", "bitmask B { X };", "struct S { any a; };"}) {
+        "struct S { map<long, long> a; };", "bitset B { X };", "struct S { any a; };"}) {
     EXPECT_NE(errorOf(text), "") << text;
   }
 }
@@ -414,7 +430,7 @@ TEST(IdlParser, EveryCountHasItsLimit) {
   EXPECT_NE(errorOf(repeat("any;", 500'000 / 4)), "");
   EXPECT_THROW((void)parseIdl(repeat("any;", kMaxProblems + 1)), IdlError);
   EXPECT_THROW((void)parseIdl(inModules(kMaxDepth, repeat("};", kMaxProblems + 100))), IdlError);
-  EXPECT_THROW((void)parseIdl("bitmask B { X };" + numbered("typedef B A", ";", kMaxDefinitions + 1)), IdlError);
+  EXPECT_THROW((void)parseIdl("bitset B { X };" + numbered("typedef B A", ";", kMaxDefinitions + 1)), IdlError);
   // A little text that has many members.
   const std::string base = "struct A { " + numbered("long a", ";", kMaxMembers) + "};";
   EXPECT_NE(errorOf(base + numbered("struct B", " : A { long b; };", 1)), "");
