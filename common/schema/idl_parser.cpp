@@ -183,7 +183,7 @@ class IdlParser {
     Type type{.kind = Kind::kStruct, .name = names_.claim(short_name)};
     if (lexer_.accept(":")) inherit(type);
     lexer_.expect("{");
-    do {
+    while (!lexer_.accept("}")) {
       const Annotations marks = annotations_.read();
       const Type* member_type = typeName();
       do {
@@ -192,7 +192,7 @@ class IdlParser {
         addMember(type, {std::move(name), declared, marks.unit, marks.is_key});
       } while (lexer_.accept(","));
       lexer_.expect(";");
-    } while (!lexer_.accept("}"));
+    }
     finish(std::move(type));
   }
 

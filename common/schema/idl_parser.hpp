@@ -1,8 +1,8 @@
 /// Reads the self-contained OMG IDL text that recordings carry (MCAP schema encoding "omgidl").
 ///
-/// Understood: modules; structs, derived ones too; enums, with values of their own or not; bit masks; unions on an
-/// enum, a boolean, a character or an integer; sequences and strings, bounded or not; arrays of any number of
-/// dimensions; typedefs; constants; boolean, octet, char, wchar (two bytes, as in DDS-XTypes 1.3), int8 to uint64,
+/// Understood: modules; structs, derived ones and empty ones too; enums, with values of their own or not; bit masks;
+/// unions on an enum, a boolean, a character or an integer; sequences and strings, bounded or not; arrays of any number
+/// of dimensions; typedefs; constants; boolean, octet, char, wchar (two bytes, as in DDS-XTypes 1.3), int8 to uint64,
 /// short to unsigned long long, float, double. Sizes, bounds, labels and values are constant expressions
 /// (idl_values.hpp). A name may be escaped (_struct), and be a word that IDL knows elsewhere (map, any, int8).
 ///

@@ -16,5 +16,6 @@ inline constexpr std::size_t kMaxInheritedBytes = std::size_t{1} << 24;  // that
 inline constexpr std::size_t kMaxEnumerators = 5'000;                    // of an enum
 inline constexpr unsigned kMaxDepth = 32;                                // of modules in modules and of types in types
 inline constexpr std::uint64_t kMaxLeastBytes = 1U << 28;                // what a message of a type takes at least
+inline constexpr std::uint32_t kMaxEmpty = 1'000;  // structs without members in a message: they take no bytes
 
 }  // namespace baton::schema

@@ -45,7 +45,7 @@ class MessageReader {
 
   /// The next item; false behind the last one. Throws PayloadError for what no message of the type can be: lengths
   /// beyond the bytes that are left or beyond a bound, a boolean that is neither 0 nor 1, a string without its end,
-  /// more than the 3 bytes behind the message that fill up a payload.
+  /// more than the 3 bytes behind the message that fill up a payload; and for more than kMaxEmpty empty structs.
   [[nodiscard]] bool next(Item& item);
 
   /// Where the last item is: "tip_position[2]"; empty for the whole message.
@@ -75,6 +75,7 @@ class MessageReader {
   bool is_little_endian_ = true;
   std::array<Level, kMaxDepth> levels_{};
   std::size_t depth_ = 0;
+  std::uint32_t empty_ = 0;  // structs without members so far
   bool has_begun_ = false;
 };
 

@@ -53,7 +53,8 @@ struct Label {
 /// The name of a union's first member, its discriminator; no name in IDL can be this.
 inline constexpr std::string_view kDiscriminator = "$discriminator";
 
-/// A struct and a union have at least one member, an array at least one element, so every value takes a byte or more.
+/// A union has at least one member, an array at least one element: a value takes a byte or more, but for structs
+/// without members and what is made of those alone.
 struct Type {
   Kind kind = Kind::kBoolean;
   std::string name{};              // of a struct, union or enum, with its modules: "baton::msg::PlantState"

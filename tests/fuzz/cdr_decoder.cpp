@@ -54,10 +54,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const schema::TypeSet types = schema::parseIdl(input.substr(0, text_end));
     for (const auto& [name, type] : types.names()) {
       require(types.find(name) == type);
-      require(type->depth <= schema::kMaxDepth && type->least_bytes > 0);
-      // Every value takes a byte, so that a message costs what its bytes cost: within each byte's value begin and end
-      // of all that is around it.
-      require(read(*type, payload) <= (payload.size() + 1) * (2 * schema::kMaxDepth + 1));
+      require(type->depth <= schema::kMaxDepth);
+      // Every value takes a byte, but for so many, so that a message costs what its bytes cost: within each value begin
+      // and end of all that is around it.
+      require(read(*type, payload) <= (payload.size() + 1 + schema::kMaxEmpty) * (2 * schema::kMaxDepth + 1));
     }
   } catch (const schema::IdlError&) {
   }

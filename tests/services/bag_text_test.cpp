@@ -125,6 +125,17 @@ TEST(BagTable, HasColumnsForTheLongestMessage) {
   EXPECT_EQ(cells, (std::vector<std::string>{"2", "-0.5", "-1.5", "", "", "", "3.0", "c", "ff", "0"}));
 }
 
+TEST(BagTable, AStructWithoutMembersHasNoColumn) {
+  const schema::TypeSet types = schema::parseIdl("struct Empty {}; struct S { Empty e; long a; };");
+  CsvColumns columns(*types.find("S"));
+  const test::Bytes message = test::Bytes().number(3);
+  columns.fit(message.bytes);
+  EXPECT_EQ(columns.finish(), std::vector<std::string>{"a"});
+  std::vector<std::string> cells;
+  columns.fill(message.bytes, cells);
+  EXPECT_EQ(cells, std::vector<std::string>{"3"});
+}
+
 TEST(BagTable, UnionsHaveTheColumnsOfAllTheirMembers) {
   const schema::TypeSet types =
       schema::parseIdl("union U switch (boolean) { case TRUE: double a; case FALSE: string b; }; struct S { U u; };");

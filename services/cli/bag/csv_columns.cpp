@@ -67,7 +67,9 @@ std::vector<std::string> CsvColumns::finish() {
 
 void CsvColumns::name(Place& place, const std::string& path, std::vector<std::string>& names) {
   const bool is_list = isList(*place.type);
-  const bool is_value = place.type->members.empty() && (!is_list || place.type->element->kind == schema::Kind::kOctet);
+  const bool is_struct = place.type->kind == schema::Kind::kStruct;  // of no members, too
+  const bool is_bytes = is_list && place.type->element->kind == schema::Kind::kOctet;
+  const bool is_value = is_bytes || (!is_list && !is_struct && place.type->members.empty());
   if (is_value) {
     place.column = names.size();
     names.push_back(path + (place.unit.empty() ? "" : " [" + place.unit + "]"));

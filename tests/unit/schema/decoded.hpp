@@ -9,12 +9,12 @@
 #include "schema/idl_parser.hpp"
 #include "schema/message_reader.hpp"
 
-namespace baton::schema::test {
+namespace baton::test {
 
 struct ValueText {
   std::ostream& out;
   void operator()(bool value) const { out << (value ? "true" : "false"); }
-  void operator()(Bytes value) const { out << value.size() << " octets"; }
+  void operator()(schema::Bytes value) const { out << value.size() << " octets"; }
   template <class Value>
   void operator()(const Value& value) const {
     out << value;
@@ -28,17 +28,17 @@ inline std::string decoded(const std::string& idl, const std::vector<int>& body)
   for (const int one : body) bytes.push_back(static_cast<std::byte>(one));
   std::ostringstream out;
   try {
-    const TypeSet types = parseIdl(idl);
-    const Type* type = types.find("S");
+    const schema::TypeSet types = schema::parseIdl(idl);
+    const schema::Type* type = types.find("S");
     if (type == nullptr) {
-      const Problem* problem = types.problemOf("S");
+      const schema::Problem* problem = types.problemOf("S");
       return problem == nullptr ? "no type S" : problem->definition + ": " + problem->text;
     }
-    MessageReader reader(*type, bytes);
-    for (Item item; reader.next(item);) {
-      if (item.what == Item::What::kEnd) continue;
-      const bool is_empty = item.type->kind == Kind::kStruct && item.type->members.empty();
-      if (item.what == Item::What::kBegin && !is_empty) continue;
+    schema::MessageReader reader(*type, bytes);
+    for (schema::Item item; reader.next(item);) {
+      if (item.what == schema::Item::What::kEnd) continue;
+      const bool is_empty = item.type->kind == schema::Kind::kStruct && item.type->members.empty();
+      if (item.what == schema::Item::What::kBegin && !is_empty) continue;
       if (out.tellp() > 0) out << ' ';
       if (is_empty) {
         out << "{}";
@@ -53,4 +53,4 @@ inline std::string decoded(const std::string& idl, const std::vector<int>& body)
   return out.str();
 }
 
-}  // namespace baton::schema::test
+}  // namespace baton::test

@@ -268,7 +268,6 @@ TEST(IdlParser, ADefinitionThatCannotBeUsedCostsThoseThatUseIt) {
                                  "struct Odd { fixed<5, 2> a; };",
                                  "struct Odd { @optional long a; };",
                                  "@mutable struct Odd { long a; };",
-                                 "struct Odd {};",
                                  "struct Odd : Nowhere { long b; };",
                                  "enum E { X }; struct Odd : E { long b; };",
                                  "struct Odd : Good { double a; };",
@@ -362,8 +361,7 @@ TEST(IdlParser, RefusesWhatWouldChangeAPayload) {
 }
 
 TEST(IdlParser, RefusesWhatHasNoMeaning) {
-  for (const char* text : {"struct S {};",
-                           "struct S { S a; };",
+  for (const char* text : {"struct S { S a; };",
                            "struct S { long a; string a; };",
                            "struct S { long a; }; struct S { long b; };",
                            "struct S { long a[0]; };",

@@ -16,6 +16,7 @@
 #include "schema/error.hpp"
 #include "schema/idl_parser.hpp"
 #include "unit/dds/full_messages.hpp"
+#include "unit/schema/decoded.hpp"
 
 namespace baton::schema {
 namespace {
@@ -298,6 +299,25 @@ TEST(MessageReader, RefusesWhatNoMessageCanBe) {
   EXPECT_EQ(error("octet a", [](Rewriter& out) { out.number(1); }), "");
   EXPECT_EQ(error("string a", [](Rewriter& out) { out.number(0); }), "");  // an empty one without its end
   EXPECT_EQ(error("long a[2]", [](Rewriter& out) { out.number(1); }), "a[1]: expected 4 bytes, found 0");
+}
+
+TEST(MessageReader, AStructWithoutMembersTakesNoBytes) {
+  const std::string empty = "struct Empty {}; ";
+  EXPECT_EQ(test::decoded("struct S {};", {}), "{}");
+  EXPECT_EQ(test::decoded("struct S { };", {0, 0, 0}), "{}") << "filled up";
+  EXPECT_EQ(test::decoded("struct S {};", {1, 0, 0, 0}), "expected the end of the message, found 4 more bytes");
+  EXPECT_EQ(test::decoded(empty + "struct S { Empty a; octet b; Empty c[2]; };", {7}), "{} b=7 {} {}");
+  EXPECT_EQ(test::decoded(empty + "struct S : Empty { octet b; };", {7}), "b=7");
+  EXPECT_EQ(test::decoded(empty + "union S switch (octet) { case 1: Empty a; };", {1}), "$discriminator=1 {}");
+  EXPECT_EQ(test::decoded(empty + "struct S { sequence<Empty> a; octet b; };", {2, 0, 0, 0, 7}), "{} {} b=7");
+}
+
+TEST(MessageReader, WhatTakesNoBytesHasALimit) {
+  const std::string empty = "struct Empty {}; struct Two { Empty a; Empty b; }; ";
+  const std::string refused = ": expected at most 1000 structs without members, found more";
+  EXPECT_EQ(test::decoded(empty + "struct S { Empty a[4000000000]; };", {}), "a[1000]" + refused);
+  EXPECT_EQ(test::decoded(empty + "struct S { sequence<Two> a; };", {0xFF, 0xFF, 0xFF, 0xFF}), "a[500].a" + refused);
+  EXPECT_EQ(test::decoded(empty + "struct S { Two a[500]; };", {}).size(), 2999U);
 }
 
 TEST(MessageReader, ReadsATypeThatIsNoStruct) {
