@@ -177,9 +177,9 @@ class IdlParser {
     type.least_bytes = base.least_bytes;
   }
 
-  void structure() {
+  const Type* structure() {
     const std::string short_name = lexer_.name("a struct's name");
-    if (lexer_.is(";")) return;  // it is to come
+    if (lexer_.is(";")) return nullptr;
     Type type{.kind = Kind::kStruct, .name = names_.claim(short_name)};
     if (lexer_.accept(":")) inherit(type);
     lexer_.expect("{");
@@ -193,14 +193,14 @@ class IdlParser {
       } while (lexer_.accept(","));
       lexer_.expect(";");
     }
-    finish(std::move(type));
+    return finish(std::move(type));
   }
 
   std::int64_t enumerator() {
     return values_.integer(std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max());
   }
 
-  void enumeration(std::int64_t bits) {
+  const Type* enumeration(std::int64_t bits) {
     if (bits <= kMostBitsOfShortEnum || bits > kBitsOfEnum) {
       lexer_.fail("an enum of four bytes", "@bit_bound(" + std::to_string(bits) + "), which is not supported");
     }
@@ -224,6 +224,7 @@ class IdlParser {
       names_.addConstant(names_.claim(name), {added, number});
       names_.addConstant(added->name + "::" + name, {added, number});
     }
+    return added;
   }
 
   /// An unsigned integer of as many bits; what the bits are called is not kept.
@@ -264,9 +265,9 @@ class IdlParser {
     } while (lexer_.is("case") || lexer_.is("default"));
   }
 
-  void unite() {
+  const Type* unite() {
     const std::string short_name = lexer_.name("a union's name");
-    if (lexer_.is(";")) return;
+    if (lexer_.is(";")) return nullptr;
     Type type{.kind = Kind::kUnion, .name = names_.claim(short_name)};
     lexer_.expect("switch");
     lexer_.expect("(");
@@ -286,11 +287,22 @@ class IdlParser {
       addMember(type, {std::move(name), declared, marks.unit, marks.is_key});
       lexer_.expect(";");
     } while (!lexer_.accept("}"));
-    finish(std::move(type));
+    return finish(std::move(type));
   }
 
-  void typeDefinition() {
-    const Type* type = typeName();
+  bool isConstructed() const { return lexer_.is("struct") || lexer_.is("union") || lexer_.is("enum"); }
+
+  /// Null when it is to come.
+  const Type* constructed(const Annotations& marks) {
+    if (lexer_.accept("struct")) return structure();
+    if (lexer_.accept("union")) return unite();
+    lexer_.expect("enum");
+    return enumeration(marks.bit_bound.value_or(kBitsOfEnum));
+  }
+
+  void typeDefinition(const Annotations& marks) {
+    const Type* type = isConstructed() ? constructed(marks) : typeName();
+    if (type == nullptr) lexer_.fail("'{'");
     do {
       const auto [name, declared] = declarator(type);
       addName(names_.claim(name), declared);
@@ -355,8 +367,8 @@ class IdlParser {
     return name;
   }
 
-  /// Up to the ';' behind it, or to the '}' around it. Returns the names it declares: those before ',', ';' or '[' in a
-  /// typedef, else the one before its body, its base, its value or its end.
+  /// Up to the ';' behind it, or to the '}' around it. Returns the names it declares: the one before its body, its
+  /// base, its value or its end, and in a typedef those before ',', ';' or '['.
   std::vector<std::string> skipDefinition() {
     std::vector<std::string> names;
     bool is_typedef = false;
@@ -371,7 +383,8 @@ class IdlParser {
       const auto isOneOf = [&](std::string_view signs) {
         return token.kind == Token::Kind::kSign && token.text.size() == 1 && signs.find(token.text) != signs.npos;
       };
-      const bool is_declared = is_typedef ? isOneOf(",;[") : names.empty() && (isOneOf("{:;=") || lexer_.is("switch"));
+      const bool is_first_name = names.empty() && (isOneOf("{:;=") || lexer_.is("switch"));
+      const bool is_declared = is_first_name || (is_typedef && isOneOf(",;["));
       if (within == 0 && is_declared && !word.empty()) names.emplace_back(word);
       if (isOneOf("{([<")) ++within;
       if (isOneOf("})]>") && within > 0) --within;
@@ -391,16 +404,12 @@ class IdlParser {
       lexer_.skipTo("}", "{");
     } else if (lexer_.accept("module")) {
       module(depth);
-    } else if (lexer_.accept("struct")) {
-      structure();
-    } else if (lexer_.accept("union")) {
-      unite();
-    } else if (lexer_.accept("enum")) {
-      enumeration(marks.bit_bound.value_or(kBitsOfEnum));
+    } else if (isConstructed()) {
+      constructed(marks);
     } else if (lexer_.accept("bitmask")) {
       bitmask(marks.bit_bound.value_or(kBitsOfBitmask));
     } else if (lexer_.accept("typedef")) {
-      typeDefinition();
+      typeDefinition(marks);
     } else if (lexer_.accept("const")) {
       constant();
     } else {

@@ -126,6 +126,23 @@ TEST(IdlParser, TypedefsAreTheirTypes) {
   EXPECT_EQ(types.find("Rows"), &memberType(types));
 }
 
+TEST(IdlParser, ATypedefMayDefineItsType) {
+  const std::string text =
+      "typedef struct Point { octet x; octet y; } Points[2], *P;"
+      "module m { typedef struct A { octet x; } B, Pair[2]; typedef enum E { X, Y } F;"
+      "  typedef union U switch (octet) { case 1: B b; } V; };"
+      "struct S { m::A a; m::Pair b; m::F f; m::V v; };";
+  EXPECT_EQ(decoded(text, {1, 2, 3, 0, 1, 0, 0, 0, 1, 5}), "a.x=1 b[0].x=2 b[1].x=3 f=1 v.$discriminator=1 v.b.x=5");
+  const TypeSet types = parseIdl(text);
+  EXPECT_EQ(types.find("m::B"), types.find("m::A"));
+  EXPECT_EQ(types.find("Points"), nullptr);
+  EXPECT_EQ(types.problemOf("Point")->text, types.problemOf("Points")->text) << "one definition, one problem";
+  EXPECT_EQ(errorOf("typedef struct A B;"), "line 1: expected '{', found 'B'");
+  EXPECT_EQ(errorOf("typedef struct A;"), "line 1: expected '{', found ';'");
+  EXPECT_EQ(errorOf("@bit_bound(8) typedef enum E { X } F;"),
+            "line 1: expected an enum of four bytes, found @bit_bound(8), which is not supported");
+}
+
 TEST(IdlParser, NamesAreLookedForFromTheInsideOut) {
   const TypeSet types = parseIdl(
       "struct T { long a; };"
@@ -288,6 +305,8 @@ TEST(IdlParser, ADefinitionThatCannotBeUsedCostsThoseThatUseIt) {
                                  "union Odd switch (float) { case 1: long a; };",
                                  "typedef long Other[1 << 1][0], Odd;",
                                  "typedef map<long, long> Odd;",
+                                 "typedef struct Other { any a; } Odd;",
+                                 "typedef struct Other : Good { any a; } More[2], Odd;",
                                  "@mine typedef wstring Other, Odd[3];",
                                  "typedef sequence<wstring, 4> Odd;",
                                  "struct Odd { long a; }; struct Odd { long b; };"}) {
