@@ -29,9 +29,13 @@ std::string IdlNames::enter(const std::string& module) {
 std::string IdlNames::claim(const std::string& name) const {
   std::string full = scope_ + name;
   if (full.size() > kMaxNameBytes) lexer_.failBeyond(kMaxNameBytes, "bytes in a name");
-  if (types_.contains(full) || constants_.contains(full) || unusable_.contains(full))
-    lexer_.fail("a new name", "'" + full + "' again");
+  if (!isNew(name)) lexer_.fail("a new name", "'" + full + "' again");
   return full;
+}
+
+bool IdlNames::isNew(const std::string& name) const {
+  const std::string full = scope_ + name;
+  return !types_.contains(full) && !constants_.contains(full) && !unusable_.contains(full);
 }
 
 void IdlNames::addUnusable(const std::string& full_name, std::size_t problem) {

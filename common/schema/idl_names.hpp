@@ -46,6 +46,7 @@ class IdlNames {
 
   /// A name that is to be declared here, with its modules. Throws IdlError when it has a meaning already.
   [[nodiscard]] std::string claim(const std::string& name) const;
+  [[nodiscard]] bool isNew(const std::string& name) const;
   void addType(const std::string& full_name, const Type* type) { types_.emplace(full_name, type); }
   /// Whatever uses it from here on throws UnusableName.
   void addUnusable(const std::string& full_name, std::size_t problem);

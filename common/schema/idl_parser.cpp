@@ -11,8 +11,10 @@
 #include "schema/idl_lexer.hpp"
 #include "schema/idl_names.hpp"
 #include "schema/idl_preprocessor.hpp"
+#include "schema/idl_skip.hpp"
 #include "schema/idl_values.hpp"
 #include "schema/limits.hpp"
+#include "schema/type_users.hpp"
 
 namespace baton::schema {
 namespace {
@@ -61,15 +63,19 @@ class IdlParser {
 
   TypeSet parse() {
     while (!atEnd()) definition(0);
+    if (!open_.empty()) dropUndefined();
     return std::move(set_);
   }
 
  private:
-  const Type* add(Type type) {
+  Type* add(Type type) {
     if (set_.types_.size() >= kMaxDefinitions) lexer_.failBeyond(kMaxDefinitions, "types");
+    return &set_.types_.emplace_back(checked(std::move(type)));
+  }
+  Type checked(Type type) const {
     if (type.depth > kMaxDepth) lexer_.failBeyond(kMaxDepth, "types within each other");
     if (type.least_bytes > kMaxLeastBytes) lexer_.failBeyond(kMaxLeastBytes, "bytes for a value");
-    return &set_.types_.emplace_back(std::move(type));
+    return type;
   }
 
   /// Of a sequence or a string.
@@ -122,6 +128,7 @@ class IdlParser {
 
   /// A name and the sizes of an array behind it, if there are any.
   std::pair<std::string, const Type*> declarator(const Type* type) {
+    expectDefined(*type);
     std::string name = lexer_.name("a name");
     std::vector<std::uint64_t> sizes;
     while (lexer_.accept("[")) {
@@ -158,17 +165,63 @@ class IdlParser {
     names_.addType(full_name, type);
   }
 
-  const Type* finish(Type type) {
-    const std::string name = type.name;
-    const Type* added = add(std::move(type));
-    names_.addType(name, added);
-    return added;
+  // --- types that are declared before they are defined, and those that contain sequences of themselves
+
+  /// The struct or union of that name, to be defined; a declaration has made it or this does.
+  Type& declared(const std::string& short_name, Kind kind) {
+    const auto known = open_.find(names_.scope() + short_name);
+    const bool is_known = known != open_.end() && set_.find(known->first) == known->second.type;
+    if (is_known && known->second.type->kind == kind) return *known->second.type;
+    const std::size_t line = lexer_.token().line;
+    const std::string name = names_.claim(short_name);
+    Type* type = add({.kind = kind, .name = name});
+    names_.addType(name, type);
+    open_[name] = {type, line};
+    return *type;
+  }
+
+  /// One whose definition has been there already stays as it is.
+  const Type* forward(const std::string& short_name, Kind kind) {
+    if (names_.isNew(short_name)) (void)declared(short_name, kind);
+    return nullptr;
+  }
+
+  const Type* finish(Type& slot, Type type) {
+    slot = checked(std::move(type));
+    open_.erase(slot.name);
+    return &slot;
+  }
+
+  void expectDefined(const Type& type) const {
+    if (!open_.contains(type.name)) return;
+    lexer_.fail("a type that is defined before, or a sequence of one that is not (recursion)", "'" + type.name + "'");
+  }
+
+  /// What is declared and nowhere defined costs those that use it.
+  void dropUndefined() {
+    TypeUsers users(set_.types_, set_.names_);
+    for (const auto& [name, declaration] : open_) dropUsers(name, declaration.line, users.take(*declaration.type));
+  }
+
+  void dropUsers(const std::string& undefined, std::size_t line, const std::vector<std::string>& names) {
+    const bool is_used = std::ranges::any_of(names, [&](const std::string& one) { return one != undefined; });
+    const auto known = set_.unusable_.find(undefined);
+    if (!is_used && known == set_.unusable_.end()) {
+      set_.names_.erase(undefined);
+      return;
+    }
+    const std::size_t problem = known != set_.unusable_.end()
+                                    ? known->second
+                                    : addProblem(undefined, "line " + std::to_string(line) +
+                                                                ": expected its definition, found a declaration alone");
+    for (const std::string& one : names) names_.addUnusable(one, problem);
   }
 
   /// The base's members come first, as in a payload.
   void inherit(Type& type) {
     const std::size_t line = lexer_.token().line;
     const Type& base = *names_.type();
+    expectDefined(base);
     if (base.kind != Kind::kStruct) failAt(line, "a struct to inherit from", "another type");
     for (const Member& one : base.members) inherited_bytes_ += sizeof one + one.name.size() + one.unit.size();
     if (inherited_bytes_ > kMaxInheritedBytes) lexer_.failBeyond(kMaxInheritedBytes, "bytes of inherited members");
@@ -179,8 +232,9 @@ class IdlParser {
 
   const Type* structure() {
     const std::string short_name = lexer_.name("a struct's name");
-    if (lexer_.is(";")) return nullptr;
-    Type type{.kind = Kind::kStruct, .name = names_.claim(short_name)};
+    if (lexer_.is(";")) return forward(short_name, Kind::kStruct);
+    Type& slot = declared(short_name, Kind::kStruct);
+    Type type{.kind = Kind::kStruct, .name = slot.name};
     if (lexer_.accept(":")) inherit(type);
     lexer_.expect("{");
     while (!lexer_.accept("}")) {
@@ -193,7 +247,7 @@ class IdlParser {
       } while (lexer_.accept(","));
       lexer_.expect(";");
     }
-    return finish(std::move(type));
+    return finish(slot, std::move(type));
   }
 
   std::int64_t enumerator() {
@@ -218,7 +272,8 @@ class IdlParser {
         lexer_.fail("each value once", "that of '" + name + "' again");
     } while (lexer_.accept(","));
     lexer_.expect("}");
-    const Type* added = finish(std::move(type));
+    const Type* added = add(std::move(type));
+    names_.addType(added->name, added);
     for (const auto& [number, name] : added->enumerators) {
       // IDL has them beside the enum; some also say Enum::NAME.
       names_.addConstant(names_.claim(name), {added, number});
@@ -267,8 +322,9 @@ class IdlParser {
 
   const Type* unite() {
     const std::string short_name = lexer_.name("a union's name");
-    if (lexer_.is(";")) return nullptr;
-    Type type{.kind = Kind::kUnion, .name = names_.claim(short_name)};
+    if (lexer_.is(";")) return forward(short_name, Kind::kUnion);
+    Type& slot = declared(short_name, Kind::kUnion);
+    Type type{.kind = Kind::kUnion, .name = slot.name};
     lexer_.expect("switch");
     lexer_.expect("(");
     (void)annotations_.read();
@@ -287,7 +343,7 @@ class IdlParser {
       addMember(type, {std::move(name), declared, marks.unit, marks.is_key});
       lexer_.expect(";");
     } while (!lexer_.accept("}"));
-    return finish(std::move(type));
+    return finish(slot, std::move(type));
   }
 
   bool isConstructed() const { return lexer_.is("struct") || lexer_.is("union") || lexer_.is("enum"); }
@@ -347,10 +403,15 @@ class IdlParser {
       problem = error.what();
     }
     if (problem.empty()) return;
-    if (set_.problems_.size() == kMaxProblems) lexer_.failBeyond(kMaxProblems, "definitions that cannot be read");
-    const std::size_t index = set_.problems_.size();
-    set_.problems_.push_back({"", std::move(problem)});
+    const std::size_t index = addProblem("", std::move(problem));
     set_.problems_[index].definition = giveUp(begin, scope, index);
+  }
+
+  /// Returns its index.
+  std::size_t addProblem(std::string definition, std::string text) {
+    if (set_.problems_.size() == kMaxProblems) lexer_.failBeyond(kMaxProblems, "definitions that cannot be read");
+    set_.problems_.push_back({std::move(definition), std::move(text)});
+    return set_.problems_.size() - 1;
   }
 
   /// Goes on behind the definition that begins there. Returns one of its names.
@@ -359,41 +420,12 @@ class IdlParser {
     names_.leave(scope);
     nesting_ = 0;
     std::string name;
-    for (const std::string& one : skipDefinition()) {
+    for (const std::string& one : skipDefinition(lexer_)) {
       name = scope + one;
       if (names_.size() >= kMaxDefinitions) lexer_.failBeyond(kMaxDefinitions, "names");
       if (name.size() <= kMaxNameBytes) names_.addUnusable(name, problem);
     }
     return name;
-  }
-
-  /// Up to the ';' behind it, or to the '}' around it. Returns the names it declares: the one before its body, its
-  /// base, its value or its end, and in a typedef those before ',', ';' or '['.
-  std::vector<std::string> skipDefinition() {
-    std::vector<std::string> names;
-    bool is_typedef = false;
-    std::size_t within = 0, braces = 0;  // of any kind; of these alone
-    std::string_view word;
-    for (bool is_first = true;; is_first = false) {
-      const Token token = lexer_.token();
-      const bool ends = lexer_.is(";") && braces == 0;
-      if (lexer_.acceptTwice("<")) continue;  // a shift
-      if (token.kind == Token::Kind::kEnd || (lexer_.is("}") && braces == 0 && !is_first)) return names;
-      is_typedef = is_typedef || (within == 0 && lexer_.is("typedef"));
-      const auto isOneOf = [&](std::string_view signs) {
-        return token.kind == Token::Kind::kSign && token.text.size() == 1 && signs.find(token.text) != signs.npos;
-      };
-      const bool is_first_name = names.empty() && (isOneOf("{:;=") || lexer_.is("switch"));
-      const bool is_declared = is_first_name || (is_typedef && isOneOf(",;["));
-      if (within == 0 && is_declared && !word.empty()) names.emplace_back(word);
-      if (isOneOf("{([<")) ++within;
-      if (isOneOf("})]>") && within > 0) --within;
-      braces += lexer_.is("{") ? 1 : 0;
-      braces -= lexer_.is("}") && braces > 0 ? 1 : 0;
-      word = token.kind == Token::Kind::kWord ? unescaped(token.text) : "";
-      lexer_.advance();
-      if (ends) return names;
-    }
   }
 
   void define(unsigned depth) {
@@ -424,6 +456,11 @@ class IdlParser {
   IdlValues values_{lexer_, names_};
   IdlAnnotations annotations_{lexer_, values_};
   std::map<std::string_view, const Type*> primitives_;
+  struct Declaration {
+    Type* type = nullptr;
+    std::size_t line = 1;
+  };
+  std::map<std::string, Declaration> open_;  // structs and unions that are declared and not defined so far
   unsigned nesting_ = 0;
   std::size_t inherited_bytes_ = 0;
 };

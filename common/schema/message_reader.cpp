@@ -148,6 +148,7 @@ void MessageReader::read(Item& item, Level* parent) {
   const bool is_empty = type.kind == Kind::kStruct && type.members.empty();
   if (is_empty && ++empty_ > kMaxEmpty)
     fail("at most " + std::to_string(kMaxEmpty) + " structs without members", "more");
+  if (depth_ == levels_.size()) fail("at most " + std::to_string(kMaxDepth) + " values within each other", "more");
   Level level{.type = &type};
   switch (type.kind) {
     case Kind::kStruct: level.count = static_cast<std::uint32_t>(type.members.size()); break;

@@ -64,7 +64,7 @@ struct Type {
   std::map<std::int64_t, std::string> enumerators{};  // enum: by value
   const Type* element = nullptr;  // sequence and array; an array of arrays has the first index outside
   std::uint64_t bound = 0;        // array: elements; string and sequence: at most so many, 0 for no bound
-  unsigned depth = 0;             // of types within it
+  unsigned depth = 0;             // of types within it, as far as they were defined before it
   std::uint64_t least_bytes = 0;  // no value takes fewer in a payload
 };
 
