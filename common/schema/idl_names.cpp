@@ -48,6 +48,10 @@ void IdlNames::addConstant(const std::string& full_name, Constant constant) {
   constants_.emplace(full_name, constant);
 }
 
+bool IdlNames::hasType(const std::string& name) const { return lookUp(types_, name) != nullptr; }
+
+const Constant* IdlNames::constant(const std::string& name) const { return lookUp(constants_, name); }
+
 const Type* IdlNames::type() {
   const std::size_t line = lexer_.token().line;
   const std::string name = lexer_.scopedName("a type");

@@ -56,9 +56,9 @@ class IdlNames {
 
   /// Takes the name of a type that was declared before.
   [[nodiscard]] const Type* type();
-  [[nodiscard]] bool hasType(const std::string& name) const { return lookUp(types_, name) != nullptr; }
+  [[nodiscard]] bool hasType(const std::string& name) const;
   /// Null when no constant has the name.
-  [[nodiscard]] const Constant* constant(const std::string& name) const { return lookUp(constants_, name); }
+  [[nodiscard]] const Constant* constant(const std::string& name) const;
 
  private:
   template <class Map>
