@@ -315,6 +315,24 @@ TEST(Stiffness, WhereNothingWouldDoThatIsSaid) {
   EXPECT_NE(slide.warnings[0].find("would do: give a larger coulomb_velocity"), std::string::npos) << slide.warnings[0];
 }
 
+TEST(Stiffness, FrictionOfEitherKindHasItsOwnAdvice) {
+  // 2000 1/s each, where a step of 1.39 ms is the longest.
+  const auto warning = [](const std::string& friction) {
+    const std::string robot = replaced(kSlider, "coulomb: 4, coulomb_velocity: 0.001", friction);
+    const std::string text =
+        "name: a\nrobot: slider.yaml\nstep_s: 0.0016\ncontrollers: [{name: pd, law: joint_pd}]\nactive: pd\n"
+        "trajectory: {waypoints: [{time_s: 0, position: [0]}]}\n";
+    return parseScenario("a.yaml", text, "slider.yaml", robot).warnings.at(0);
+  };
+  EXPECT_EQ(
+      warning("viscous: 4000, coulomb: 0.5, coulomb_velocity: 100"),
+      "a.yaml:3: step_s: viscous joint friction makes a pole at 2000 1/s, too fast for the plant's sub-steps; give "
+      "substeps: 2, or less viscous friction in the robot file");
+  EXPECT_NE(warning("viscous: 40, coulomb: 4").find(", or a larger coulomb_velocity in the robot"), std::string::npos);
+  EXPECT_NE(warning("viscous: 4000, coulomb: 4").find("coulomb_velocity and less viscous friction in the robot"),
+            std::string::npos);
+}
+
 TEST(Stiffness, OnlyALawThatIsAloneIsToBlame) {
   const auto lost = [](Coupling coupling, bool is_touching) {
     Scenario scenario;
