@@ -6,6 +6,13 @@
 
 namespace baton {
 
+/// In the units below nothing real is larger; what is comes from a fault, and is refused where it is read.
+inline constexpr double kLargestSignal = 1e12;
+template <class Values>
+[[nodiscard]] bool isInRange(const Eigen::DenseBase<Values>& values) {
+  return (values.derived().array().abs() <= kLargestSignal).all();
+}
+
 /// What is measured at the start of a step.
 struct RobotState {
   JointVector q;            // rad or m

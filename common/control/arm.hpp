@@ -54,7 +54,7 @@ class Arm {
   [[nodiscard]] JointVector holdingEffort(std::uint64_t step) const;
 
   /// Holds tau, cut to the joints' limits, over one step that begins with this contact. Returns false, leaving the
-  /// state as it was, when the motion stops being finite.
+  /// state as it was, when the motion runs away.
   [[nodiscard]] bool move(const JointVector& tau, const Contact& contact);
 
   /// State, blend and what the coupling remembers; the tip follows from them.

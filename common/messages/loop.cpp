@@ -22,20 +22,27 @@ constexpr const char* kNotFinite = "is not finite";
 
 // Each returns what is wrong with a field, nullptr when nothing is.
 
+template <class Values>
+[[nodiscard]] const char* wrongWith(const Eigen::DenseBase<Values>& values) {
+  static_assert(kLargestSignal == 1e12);
+  if (isInRange(values)) return nullptr;
+  return values.derived().allFinite() ? "is beyond 1e12" : kNotFinite;
+}
+
 template <class Segment>
 [[nodiscard]] const char* read(const std::array<double, 3>& from, Segment&& to) {
   to = Eigen::Map<const Vector3>(from.data());
-  return Eigen::Map<const Vector3>(from.data()).allFinite() ? nullptr : kNotFinite;
+  return wrongWith(Eigen::Map<const Vector3>(from.data()));
 }
 
 [[nodiscard]] const char* read(const std::array<double, 9>& from, Matrix3& to) {
   to = Eigen::Map<const RowMajor3>(from.data());
-  return to.allFinite() ? nullptr : kNotFinite;
+  return wrongWith(to);
 }
 
 [[nodiscard]] const char* read(double from, double& to) {
   to = from;
-  return std::isfinite(to) ? nullptr : kNotFinite;
+  return wrongWith(Eigen::Matrix<double, 1, 1>(to));
 }
 
 /// One entry a joint.
@@ -45,8 +52,9 @@ struct Joints {
 };
 
 [[nodiscard]] const char* read(const Joints& from, JointVector& to) {
-  if (readSequence(from.values, from.n, to)) return nullptr;
-  return from.values.size() == static_cast<std::size_t>(from.n) ? kNotFinite : "has not one entry a joint";
+  const bool is_read = readSequence(from.values, from.n, to);
+  if (from.values.size() != static_cast<std::size_t>(from.n)) return "has not one entry a joint";
+  return is_read ? wrongWith(to) : kNotFinite;
 }
 
 void write(const Matrix3& R, msg::Quaternion& to) {

@@ -1,6 +1,7 @@
-/// The loop's signals to messages and back. Reading checks what arrived: a sample of the wrong size or with a number
-/// that is not finite is refused, so nothing of the kind reaches a law or the integrator. Writing into a reused message
-/// does not allocate once its sequences have held kMaxJoints entries: see prepare().
+/// The loop's signals to messages and back. Reading checks what arrived: a sample of the wrong size, or with a
+/// number that is not finite or beyond kLargestSignal, is refused, so nothing of the kind reaches a law or the
+/// integrator. Writing into a reused message does not allocate once its sequences have held kMaxJoints entries: see
+/// prepare().
 #pragma once
 
 #include <cstdint>

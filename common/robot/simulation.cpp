@@ -78,7 +78,7 @@ bool integrateStep(const RobotModel& model, const JointVector& tau, const Contac
     q1 += h / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4);
     v1 += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
   }
-  if (!q1.allFinite() || !v1.allFinite()) return false;
+  if (!isInRange(q1) || !(v1.array().abs() <= kFastestMotion).all()) return false;
   q = q1;
   qd = v1;
   return true;

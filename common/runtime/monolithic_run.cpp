@@ -112,9 +112,8 @@ bool MonolithicRun::step() {
   arbiter_.consider(step_, effort_, contact_.penetration > 0.0);
   const JointVector tau_before = arm_.state().tau_applied;
   if (arbiter_.changedAt(step_)) takeOver();
-  if (!arm_.move(arm_.blended(step_, effort_), contact_)) {
-    return fail(scenario_.lostMotion(contact_.penetration > 0.0));
-  }
+  const JointVector tau = arm_.blended(step_, effort_);
+  if (!arm_.move(tau, contact_)) return fail(scenario_.lostMotion(contact_, Arm(arm_).move(tau, {})));
   if (arbiter_.changedAt(step_)) {
     assignSequence(arm_.state().tau_applied - tau_before, failovers_.back().applied_effort_step());
   }

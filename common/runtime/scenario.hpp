@@ -140,8 +140,9 @@ struct Scenario {
   /// Whether something of this service goes wrong on purpose.
   [[nodiscard]] bool wantsFaultOf(const std::string& service) const;
   [[nodiscard]] bool plansFailureOf(const std::string& controller_name) const;
-  /// Why the motion may have stopped being finite, and what to do. @param is_touching  the tip, where it did.
-  [[nodiscard]] std::string lostMotion(bool is_touching) const;
+  /// Why the motion may have run away, and what to do.
+  /// @param contact  of that step.  @param is_its_doing  without that contact it would have gone on.
+  [[nodiscard]] std::string lostMotion(const Contact& contact, bool is_its_doing) const;
   /// The arm at the start of the run.
   [[nodiscard]] ArmConfig armConfig() const;
   /// The controller called that; throws UsageError, with the nearest name, when there is none.

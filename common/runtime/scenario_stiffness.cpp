@@ -167,15 +167,21 @@ void warnOfFastPoles(const YamlMap& map, Scenario& scenario) {
                               worst.otherwise);
 }
 
-std::string Scenario::lostMotion(bool is_touching) const {
-  const std::string lost = "the motion is no longer finite: ";
+std::string Scenario::lostMotion(const Contact& contact, bool is_its_doing) const {
+  const std::string lost = "the motion has run away: ";
+  const bool is_touching = contact.penetration > 0.0;
+  if (is_its_doing && !is_touching) {
+    return lost + fmt::format("the contact that the environment sent pushes with {:g} N, where the tip touches nothing",
+                              contact.h_e.head<3>().norm());
+  }
   if (!fast_pole.empty()) return lost + fast_pole;
   if (!is_touching) return lost + "the step may be too long for the law's gains";
   if (coupling != Coupling::kDerivatives) {
     return lost +
            "the step may be too long for the wall's force, which the coupling keeps over it, or for the law's gains";
   }
-  return lost + "the step or its sub-steps may be too long for the law's gains or for the wall's stiffness";
+  return lost + "the step or its sub-steps may be too long for the law's gains or for the wall's stiffness" +
+         (is_its_doing ? fmt::format("; it is pushed by {:g} N of contact", contact.h_e.head<3>().norm()) : "");
 }
 
 }  // namespace baton

@@ -269,9 +269,8 @@ void Plant::endStep() {
   const bool takes_over = completed_ && master_.hasCommand();
   const JointVector raw_step = takes_over ? takeOver(step) : JointVector();
   if (takes_over && keeps_torque_) effort_ = arm_.holdingEffort(step);  // the blend it reckoned with is gone
-  if (!arm_.move(arm_.blended(step, effort_), contact_)) {
-    return abort(scenario_.lostMotion(contact_.penetration > 0.0));
-  }
+  const JointVector tau = arm_.blended(step, effort_);
+  if (!arm_.move(tau, contact_)) return abort(scenario_.lostMotion(contact_, Arm(arm_).move(tau, {})));
   chain_hash_ = dds::chainStep(chain_hash_, hashes_);
   if (takes_over) {
     completed_->at_step = step;

@@ -356,10 +356,16 @@ TEST(LoopMessages, WhatIsRefusedNamesItsFieldAndWhatIsWrongWithIt) {
   contact.force_by_velocity()[8] = -std::numeric_limits<double>::infinity();
   Contact touch;
   EXPECT_EQ(fromMessage(contact, touch).text(), "force_by_velocity is not finite");
+  contact.penetration(-1e300);
+  EXPECT_EQ(fromMessage(contact, touch).text(), "penetration is beyond 1e12");
   msg::JointCommand command;
   command.effort({1.0, 2.0});
   JointVector effort;
   EXPECT_EQ(fromMessage(command, 3, effort).text(), "effort has not one entry a joint");
+  command.effort({1.0, 1e12, 2e12});
+  EXPECT_EQ(fromMessage(command, 3, effort).text(), "effort is beyond 1e12");
+  command.effort({1.0, 1e12, -1e12});
+  EXPECT_EQ(fromMessage(command, 3, effort).text(), "");
 }
 
 TEST(LoopMessages, AQuaternionThatIsNoRotationIsRefused) {

@@ -295,7 +295,7 @@ TEST(Stiffness, AWallThatSubstepsCannotFollowIsWarnedOfAndToBlame) {
             "a.yaml:3: step_s: wall 1 makes a pole at 22360.7 1/s where the tip touches it, too fast for the plant's "
             "sub-steps; give substeps: 8, or a softer wall");
   EXPECT_EQ(few.failure,
-            "the motion is no longer finite: wall 1 makes a pole at 22360.7 1/s where the tip touches it, too fast for "
+            "the motion has run away: wall 1 makes a pole at 22360.7 1/s where the tip touches it, too fast for "
             "the plant's sub-steps; give substeps: 8");
 }
 
@@ -345,12 +345,26 @@ TEST(Stiffness, OnlyALawThatIsAloneIsToBlame) {
   const auto lost = [](Coupling coupling, bool is_touching) {
     Scenario scenario;
     scenario.coupling = coupling;
-    return scenario.lostMotion(is_touching);
+    Contact contact;
+    contact.penetration = is_touching ? 0.1 : 0.0;
+    return scenario.lostMotion(contact, false);
   };
   EXPECT_EQ(lost(Coupling::kDerivatives, false),
-            "the motion is no longer finite: the step may be too long for the law's gains");
+            "the motion has run away: the step may be too long for the law's gains");
   EXPECT_NE(lost(Coupling::kDerivatives, true).find("wall's stiffness"), std::string::npos);
   EXPECT_NE(lost(Coupling::kHeld, true).find("coupling keeps"), std::string::npos);
+}
+
+TEST(Stiffness, AContactThatMovesTheArmBeyondAllRangeIsNamed) {
+  const Scenario scenario = parse(kTip);
+  Contact contact;
+  contact.h_e(2) = -1e9;
+  Arm arm(scenario.robot, scenario.armConfig());
+  const JointVector tau = JointVector::Zero(3);
+  EXPECT_FALSE(arm.move(tau, contact)) << "at once: its state would be " << arm.state().qd.transpose();
+  EXPECT_EQ(scenario.lostMotion(contact, Arm(arm).move(tau, {})),
+            "the motion has run away: the contact that the environment sent pushes with 1e+09 N, where the tip "
+            "touches nothing");
 }
 
 }  // namespace
