@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "base/plural.hpp"
 #include "control/nearest_name.hpp"
 
 namespace baton {
@@ -26,7 +27,7 @@ std::string found(const ParameterValue& value) {
   if (const auto* word = std::get_if<std::string>(&value)) return "found '" + *word + "'";
   const auto& values = std::get<std::vector<double>>(value);
   if (values.empty()) return "found no number";
-  return "found " + std::to_string(values.size()) + (values.size() == 1 ? " number: " : " numbers: ") + listed(values);
+  return "found " + counted(values.size(), "number") + ": " + listed(values);
 }
 
 std::string rangeText(const ParameterSpec& spec) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/plural.hpp"
 #include "base/text.hpp"
 #include "mcap/crc.hpp"
 #include "mcap/shape.hpp"
@@ -435,13 +436,13 @@ std::uint64_t lengthOf(const std::vector<Damage>& damage) {
 }
 
 std::string describe(const Damage& damage) {
-  const std::string messages = std::to_string(damage.messages);
   if (damage.length == 0) {
-    return damage.messages > 0 ? messages + " " + damage.reason
+    return damage.messages > 0 ? std::to_string(damage.messages) + " " + damage.reason
                                : "something is missing at byte " + std::to_string(damage.offset) + ": " + damage.reason;
   }
-  return std::to_string(damage.length) + " bytes at byte " + std::to_string(damage.offset) +
-         (damage.messages > 0 ? ", with " + messages + " messages," : "") + " cannot be read: " + damage.reason;
+  return counted(damage.length, "byte") + " at byte " + std::to_string(damage.offset) +
+         (damage.messages > 0 ? ", with " + counted(damage.messages, "message") + "," : "") +
+         " cannot be read: " + damage.reason;
 }
 
 }  // namespace baton::mcap

@@ -3,6 +3,7 @@
 #include <set>
 #include <tuple>
 
+#include "base/plural.hpp"
 #include "mcap/contents.hpp"
 #include "mcap/index.hpp"
 #include "mcap/shape.hpp"
@@ -49,15 +50,15 @@ std::string otherExtent(const FileIndex& summary, const FileIndex& found) {
 
 std::string otherCounts(const Statistics& summary, const Statistics& found) {
   if (summary.message_count != found.message_count) {
-    return "it counts " + std::to_string(summary.message_count) + " messages, there are " +
+    return "it counts " + counted(summary.message_count, "message") + " where there are " +
            std::to_string(found.message_count);
   }
   for (const auto& [id, count] : found.channel_message_counts) {
     const auto listed = summary.channel_message_counts.find(id);
     const std::uint64_t claimed = listed == summary.channel_message_counts.end() ? 0 : listed->second;
     if (claimed == count) continue;
-    return "it counts " + std::to_string(claimed) + " messages of channel " +
-           std::to_string(static_cast<unsigned>(id)) + ", there are " + std::to_string(count);
+    return "it counts " + counted(claimed, "message") + " of channel " + std::to_string(static_cast<unsigned>(id)) +
+           ", there are " + std::to_string(count);
   }
   if (summary.start_time_ns != found.start_time_ns || summary.end_time_ns != found.end_time_ns) {
     return "it has messages from " + range(summary.start_time_ns, summary.end_time_ns) + " ns, they are from " +

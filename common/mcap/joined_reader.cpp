@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/plural.hpp"
 
 namespace baton::mcap {
 namespace {
@@ -43,7 +44,7 @@ constexpr auto kLaterWalk = [](const auto* a, const auto* b) {
 std::string FileList::string() const {
   const std::size_t more = paths_.size() - 1;
   if (more == 0) return first().string();
-  return first().string() + " and " + std::to_string(more) + " more file" + (more > 1 ? "s" : "");
+  return first().string() + " and " + counted(more, "more file");
 }
 
 JoinedReader::JoinedReader(const FileList& files, const DamageSink& on_damage) {

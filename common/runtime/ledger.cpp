@@ -4,6 +4,7 @@
 #include <charconv>
 #include <utility>
 
+#include "base/plural.hpp"
 #include "dds/codec.hpp"
 #include "dds/hash.hpp"
 #include "dds/topics.hpp"
@@ -107,17 +108,17 @@ std::set<Ledger::Key> Ledger::vouchedFor() const {
 
 std::vector<std::string> Ledger::unvouched(const std::set<Key>& vouched) const {
   // Only on topics that the run's own services count: operators come and go without a manifest.
-  std::set<std::string> counted;
+  std::set<std::string> listed;
   for (const msg::ServiceManifest& manifest : manifests_) {
     if (!services_.contains(manifest.name().c_str())) continue;
-    for (const msg::StreamManifest& sent : manifest.streams()) counted.insert(sent.topic().c_str());
+    for (const msg::StreamManifest& sent : manifest.streams()) listed.insert(sent.topic().c_str());
   }
   std::vector<std::string> result;
   for (const auto& [key, stream] : streams_) {
     if (stream.count + stream.missing == 0 || left_out_.contains(key.first)) continue;
-    if (counted.contains(key.first) && !vouched.contains(key)) {
+    if (listed.contains(key.first) && !vouched.contains(key)) {
       result.push_back(key.first + ": a writer that ended without a manifest, nobody vouches for its " +
-                       std::to_string(stream.count) + " samples");
+                       counted(stream.count, "sample"));
     }
   }
   return result;
@@ -145,7 +146,7 @@ std::vector<std::string> Ledger::problemsOf(const msg::ServiceManifest& manifest
     }
     const std::string what = topic + " of " + manifest.name().c_str();
     if (received.count + received.excused != sent.count()) {
-      result.push_back(what + ": " + std::to_string(sent.count()) + " samples sent, " + std::to_string(received.count) +
+      result.push_back(what + ": " + counted(sent.count(), "sample") + " sent, " + std::to_string(received.count) +
                        " recorded");
     } else if (received.excused == 0 && received.stream_hash != sent.stream_hash()) {
       result.push_back(what + ": the recorded bytes are not those sent");
@@ -187,14 +188,16 @@ std::vector<std::string> Ledger::lossesOf(Concern concern, const std::set<Key>& 
     for (const auto& [key, stream] : streams_) {
       if (stream.excused == 0 && !isRemarked(key.first)) dropped += stream.dropped;
     }
-    if (dropped > 0) result.push_back(std::to_string(dropped) + " samples came faster than they could be written");
+    if (dropped > 0)
+      result.push_back(counted(dropped, "sample") + " came faster than " + (dropped == 1 ? "it" : "they") +
+                       " could be written");
   }
   for (const auto& [key, stream] : streams_) {
     const std::uint64_t missing = stream.missing - std::min(stream.missing, stream.excused);
     if (missing == 0 || concernOf(key.first) != concern || mayLack(key.first)) continue;
     if (but.contains(key) || left_out_.contains(key.first)) continue;
-    result.push_back(key.first + " of " + dds::toString(key.second) + ": " + std::to_string(missing) +
-                     " samples are missing");
+    result.push_back(key.first + " of " + dds::toString(key.second) + ": " + counted(missing, "sample") + " " +
+                     areOrIs(missing) + " missing");
   }
   return result;
 }

@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/plural.hpp"
 #include "runtime/cell.hpp"
 #include "runtime/processes.hpp"
 #include "runtime/signals.hpp"
@@ -286,12 +287,12 @@ void Service::runEnded(std::uint64_t step, bool clean) {
 std::string lossText(const dds::TopicFacts& topic, std::uint64_t lost, std::uint64_t unreadable,
                      std::uint64_t of_strangers) {
   std::string text;
-  const auto add = [&text](std::uint64_t count, const char* what) {
-    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + what;
+  const auto add = [&text](std::uint64_t count, const std::string& what) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + what;
   };
-  add(topic.profile == dds::Profile::kStatus ? 0 : lost, " samples lost on the way");
-  add(unreadable, " that could not be read");
-  add(of_strangers, " of strangers, not heard");
+  add(topic.profile == dds::Profile::kStatus ? 0 : lost, counted(lost, "sample") + " lost on the way");
+  add(unreadable, std::to_string(unreadable) + " that could not be read");
+  add(of_strangers, std::to_string(of_strangers) + " of strangers, not heard");
   return text.empty() ? text : std::string(topic.name) + ": " + text;
 }
 

@@ -14,6 +14,7 @@
 
 #include "base/error.hpp"
 #include "base/number.hpp"
+#include "base/plural.hpp"
 #include "base/text.hpp"
 #include "control/nearest_name.hpp"
 #include "runtime/paths.hpp"
@@ -30,10 +31,6 @@ std::string tidied(const std::string& text) {
 }
 
 std::string quoted(const std::string& text) { return "'" + tidied(text) + "'"; }
-
-std::string counted(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
 
 /// A decimal number, or [sign][a*]pi[/b], which is (a pi)/b.
 std::optional<double> parseNumber(const std::string& scalar) {

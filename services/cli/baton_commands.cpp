@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/plural.hpp"
 #include "cell_target.hpp"
 #include "latest_by_name.hpp"
 #include "messages/state_names.hpp"
@@ -211,7 +212,7 @@ void printDone(const msg::SwapOutcome& outcome, const std::optional<msg::SwapRep
   say("\n%-16s %s [N m or N] in its forecast for step %llu\n", "torques apart",
       numbersText(outcome.forecast_effort_step()).c_str(), ull{outcome.forecast_step()});
   const std::string fades =
-      outcome.blend_steps() > 0 ? "fades over " + std::to_string(outcome.blend_steps()) + " steps" : "at once";
+      outcome.blend_steps() > 0 ? "fades over " + counted(outcome.blend_steps(), "step") : "at once";
   say("%-16s %s, %s\n", "", numbersText(outcome.raw_effort_step()).c_str(), fades.c_str());
   say("%-16s %s from one step to the next\n", "the joints felt", numbersText(outcome.applied_effort_step()).c_str());
   if (!report) {

@@ -23,7 +23,7 @@ void addMetricsCommand(CLI::App& app, ExitCode& exit_code) {
   command->callback([=, &exit_code] {
     const mcap::FileList files = findRecording(*wish, exit_code);
     const Trace trace = readTrace(files);
-    if (!trace.is_complete) sayWarning(files.string() + " is not certified complete");
+    if (!trace.is_complete) sayWarning(files.string() + ": not certified complete");
     const Metrics metrics = metricsOf(trace);
     sayText((*json ? toText(toJson(metrics)) : toText(metrics)) + '\n');
   });

@@ -11,6 +11,7 @@
 #include <string>
 #include <tuple>
 
+#include "base/plural.hpp"
 #include "base/text.hpp"
 #include "cell_target.hpp"
 #include "messages/state_names.hpp"
@@ -118,10 +119,10 @@ void tell(const PlayerArguments& arguments) {
   if (status.passes() > 1) text += fmt::format(" of {}", status.passes());
   if (status.waiting_for().size() > 0) text += fmt::format(", waits for {}", escaped(status.waiting_for().c_str()));
   text += fmt::format(
-      "\n{} messages sent, of {} in a pass; lateness p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us, {} "
+      "\n{} sent, of {} in a pass; lateness p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us, {} "
       "overdue\n",
-      status.messages(), status.total(), status.lateness_p50_us(), status.lateness_p99_us(), status.lateness_max_us(),
-      status.overdue());
+      counted(status.messages(), "message"), status.total(), status.lateness_p50_us(), status.lateness_p99_us(),
+      status.lateness_max_us(), status.overdue());
   sayText(text);
 }
 
@@ -154,7 +155,7 @@ void ask(const PlayerArguments& arguments, ExitCode& exit_code) {
                         {"reason", reply->reason().c_str()}}) +
             '\n');
   } else if (reply->accepted()) {
-    sayText(fmt::format("done at {:.6f} s, {} messages sent\n", position_s, reply->messages()));
+    sayText(fmt::format("done at {:.6f} s, {} sent\n", position_s, counted(reply->messages(), "message")));
   } else {
     sayText(fmt::format("refused at {:.6f} s: {}\n", position_s, reply->reason().c_str()));
   }

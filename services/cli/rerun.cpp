@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/plural.hpp"
 #include "report/recording.hpp"
 #include "runtime/paths.hpp"
 
@@ -31,8 +32,8 @@ std::string Rerun::text() const {
   if (first_missing) {
     return differs + fmt::format("ends before step {}: {}", *first_missing, result.at("reason").get<std::string>());
   }
-  return fmt::format("identical: {} steps, {} decision{} taken from the recording, hash {}", steps, decisions,
-                     decisions == 1 ? "" : "s", hash);
+  return fmt::format("identical: {}, {} taken from the recording, hash {}", counted(steps, "step"),
+                     counted(decisions, "decision"), hash);
 }
 
 Rerun rerun(const mcap::FileList& recording, const std::filesystem::path& folder, RunRequest run,

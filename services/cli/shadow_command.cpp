@@ -23,7 +23,7 @@ struct ShadowRequest {
 void shadow(const ShadowRequest& request, ExitCode& exit_code) {
   const mcap::FileList files = findRecording(request.recording, exit_code);
   const RecordedEfforts run = readEfforts(files);
-  if (!run.trace.is_complete) sayWarning(files.string() + " is not certified complete");
+  if (!run.trace.is_complete) sayWarning(files.string() + ": not certified complete");
   const Shadow table = shadowOf(run);
   const fs::path stem = fs::path(request.out) / (run.trace.scenario.name + "_shadow");
   if (request.json) {

@@ -131,7 +131,7 @@ void whatIf(const WhatIfRequest& request) {
   const Counterfactual made = request.out.empty() ? counterfactual(request.files, request.wish, {}, progress)
                                                   : makeWithFiles(request, progress, files);
   line.show("");
-  if (!made.is_complete) sayWarning(request.files.string() + " is not certified complete");
+  if (!made.is_complete) sayWarning(request.files.string() + ": not certified complete");
   if (request.json) {
     nlohmann::ordered_json json = toJson(made);
     if (!files.empty()) json["files"] = files;

@@ -1,6 +1,7 @@
 #include "law_runner.hpp"
 
 #include "base/error.hpp"
+#include "base/plural.hpp"
 
 namespace baton {
 namespace {
@@ -274,8 +275,7 @@ msg::ControllerStatus LawRunner::status() const {
   } else if (failing_) {
     status.text(toString(last_status_));
   }
-  if (skipped_ > 0 && !failing_)
-    status.text("skipped " + std::to_string(skipped_) + " steps whose inputs did not come");
+  if (skipped_ > 0 && !failing_) status.text("skipped " + counted(skipped_, "step") + " whose inputs did not come");
   return status;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/plural.hpp"
 #include "runtime/json.hpp"
 
 namespace baton {
@@ -83,7 +84,7 @@ std::string Certificate::summary() const {
   }
   if (holes_.size() > but.size()) but.push_back(fmt::format("{} more", holes_.size() - but.size()));
   if (const std::size_t topics = ledger_.leftOut().size(); topics > 0) {
-    but.push_back(fmt::format("{} topic{}", topics, topics == 1 ? "" : "s"));
+    but.push_back(counted(topics, "topic"));
   }
   std::string text = "complete";
   if (!ending_.reason.empty()) text += ", " + ending_.reason;

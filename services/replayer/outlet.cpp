@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "base/plural.hpp"
 #include "sleeper.hpp"
 
 namespace baton {
@@ -56,8 +57,8 @@ std::vector<std::string> Outlet::problems() const {
   std::vector<std::string> all;
   for (const auto& [id, line] : lines_) {
     if (line.refused == 0) continue;
-    all.push_back("topic " + line.topic + ": DDS refused " + std::to_string(line.refused) +
-                  " messages, the first of them of " + std::to_string(line.first_refused) + " bytes");
+    all.push_back("topic " + line.topic + ": DDS refused " + counted(line.refused, "message") + ", the first of " +
+                  counted(line.first_refused, "byte"));
   }
   return all;
 }

@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "base/plural.hpp"
 #include "base/text.hpp"
 #include "runtime/json.hpp"
 
@@ -21,17 +22,20 @@ std::string endText(const ReplayResult& result) {
 
 std::string latenessText(const ReplayResult& result, const ReplayOptions& options) {
   const Histogram& lateness = result.lateness_ns;
-  return fmt::format("lateness     p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us, {} messages above {:g} us\n",
+  return fmt::format("lateness     p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us, {} above {:g} us\n",
                      inMicroseconds(lateness.quantile(0.5)), inMicroseconds(lateness.quantile(0.99)),
-                     inMicroseconds(lateness.max()), result.overdue, options.overdue_us);
+                     inMicroseconds(lateness.max()), counted(result.overdue, "message"), options.overdue_us);
 }
 
 }  // namespace
 
 std::string summaryText(const ReplayResult& result, const ReplayOptions& options) {
-  std::string text = fmt::format("{:<13}{} of {} messages, {} writers, {} topics\n", endText(result), result.messages,
-                                 result.total, result.writers, result.topics);
-  if (result.passes > 1) text += fmt::format("passes       {}\n", result.passes);
+  const std::string pass = counted(result.total, "message");
+  std::string text =
+      fmt::format("{:<13}{}, {}, {}\n", endText(result),
+                  result.passes > 1 ? fmt::format("{} in {} passes of {}", result.messages, result.passes, pass)
+                                    : fmt::format("{} of {}", result.messages, pass),
+                  counted(result.writers, "writer"), counted(result.topics, "topic"));
   text += fmt::format("duration     {:.3f} s for {:.3f} recorded s, {:.0f} messages/s\n", result.elapsed_s,
                       result.recorded_s, messagesPerSecond(result));
   if (result.lateness_ns.count() > 0) text += latenessText(result, options);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "summary.hpp"
 
 namespace baton {
 namespace {
@@ -95,6 +96,21 @@ TEST(ReplayOptions, RefuseATimeRangeThatEndsBeforeItStarts) {
   EXPECT_EQ(parsed({"run.mcap", "--from", "1", "--to", "2"}).range.to_s, 2.0);
   EXPECT_THROW((void)parsed({"run.mcap", "--from", "2", "--to", "1"}), UsageError);
   EXPECT_THROW((void)parsed({"run.mcap", "--from", "-1"}), UsageError);
+}
+
+TEST(ReplaySummary, TellsOfHowManyMessagesOfAPassAndOfHowManyPasses) {
+  ReplayResult result;
+  result.messages = 1;
+  result.total = 1;
+  result.passes = 1;
+  result.writers = 1;
+  result.topics = 2;
+  EXPECT_EQ(summaryText(result, {}).find("replayed     1 of 1 message, 1 writer, 2 topics\n"), 0U);
+  result.was_interrupted = true;
+  result.messages = 5282;
+  result.total = 4493;
+  result.passes = 2;
+  EXPECT_EQ(summaryText(result, {}).find("interrupted  5282 in 2 passes of 4493 messages, 1 writer, 2 topics\n"), 0U);
 }
 
 }  // namespace

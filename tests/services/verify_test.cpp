@@ -109,7 +109,7 @@ TEST_F(VerifyTest, OtherBytesThanThoseSentAreNoticed) {
 TEST_F(VerifyTest, MessagesThatComeTwiceAreNoticed) {
   const Verification found = verifyWith({.repeat = 7});
   EXPECT_EQ(found.verdict(), RecordingVerdict::kIncomplete);
-  EXPECT_TRUE(mentions(found.missing, "1 messages come twice")) << all(found);
+  EXPECT_TRUE(mentions(found.missing, "1 message comes twice")) << all(found);
 }
 
 TEST_F(VerifyTest, WithoutTheWordOfEverybodyNothingIsProven) {

@@ -12,6 +12,7 @@
 #include "bag/selection.hpp"
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
+#include "base/plural.hpp"
 #include "dds/hash.hpp"
 #include "mcap/repeated.hpp"
 #include "runtime/json.hpp"
@@ -135,7 +136,7 @@ ExitCode cut(CutRequest& request) {
                     {"latched", copied.repeated}}) +
             '\n');
   } else {
-    sayf("cut         {}: {} of {} messages of {}\n", request.out.file, copied.kept, copied.of, in);
+    sayf("cut         {}: {} of {} of {}\n", request.out.file, copied.kept, counted(copied.of, "message"), in);
     if (copied.repeated > 0) {
       sayf("            and in front {} from before, as a late joiner would have been given them\n", copied.repeated);
     }

@@ -8,6 +8,7 @@
 #include "bag/run_hash.hpp"
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
+#include "base/plural.hpp"
 #include "dds/topics.hpp"
 #include "report/recording.hpp"
 #include "runtime/json.hpp"
@@ -72,7 +73,7 @@ ExitCode hash(const HashRequest& request) {
       verdict += "\n" +
                  (comparison.steps == 0 ? "no step in common with " + other_file.string()
                                         : "the same as " + other_file.string() + " in the " +
-                                              std::to_string(comparison.steps) + " steps that both have") +
+                                              counted(comparison.steps, "step") + " that both have") +
                  (other.firstBroken() ? ", whose payloads do not give its own hash" : "");
     }
     is_good = is_good && is_same;

@@ -11,6 +11,7 @@
 #include "bag/copy_target.hpp"
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
+#include "base/plural.hpp"
 #include "base/text.hpp"
 #include "dds/hash.hpp"
 #include "mcap/repeated.hpp"
@@ -184,7 +185,8 @@ ExitCode merge(MergeRequest& request) {
     sayText(toText({{"out", request.out.file}, {"files", files}, {"messages", copy.messages()}, {"missing", missing}}) +
             '\n');
   } else {
-    sayf("merged      {} files into {}: {} messages\n", sources.size(), request.out.file, copy.messages());
+    sayf("merged      {} into {}: {}\n", counted(sources.size(), "file"), request.out.file,
+         counted(copy.messages(), "message"));
   }
   return missing.empty() ? ExitCode::kOk : ExitCode::kFailed;
 }

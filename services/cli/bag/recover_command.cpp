@@ -6,6 +6,7 @@
 
 #include "bag/copy_target.hpp"
 #include "bag/subcommands.hpp"
+#include "base/plural.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
 #include "runtime/say.hpp"
@@ -19,25 +20,26 @@ struct RecoverRequest {
   bool json = false;
 };
 
-/// "3 chunks and 120 messages"; empty for none.
-std::string countsOf(const mcap::Recovery& found) {
+/// "3 chunks and 120 messages are lost"; empty for none.
+std::string lostIn(const mcap::Recovery& found) {
   std::string text;
   for (const auto& [count, what] : {std::pair(found.lost_chunks, "chunk"), {found.lost_messages, "message"}}) {
     if (count == 0) continue;
-    text += fmt::format("{}{} {}{}", text.empty() ? "" : " and ", count, what, count == 1 ? "" : "s");
+    text += (text.empty() ? "" : " and ") + counted(count, what);
   }
-  return text;
+  if (text.empty()) return "";
+  return text + " " + areOrIs(found.lost_chunks + found.lost_messages) + " lost";
 }
 
 /// What the input was, in a sentence.
 std::string verdictOn(const mcap::Recovery& found) {
-  const std::string counts = countsOf(found);
+  const std::string lost = lostIn(found);
   if (found.lost_bytes > 0) {
     return fmt::format("{} of its bytes could not be read{}", found.lost_bytes,
-                       counts.empty() ? "" : ": at least " + counts + " are lost");
+                       lost.empty() ? "" : ": at least " + lost);
   }
   if (!found.lost.empty()) {
-    return "all of its bytes could be read, and " + (counts.empty() ? "something is missing" : counts + " are lost");
+    return "all of its bytes could be read, and " + (lost.empty() ? "something is missing" : lost);
   }
   if (found.is_whole) return "it was whole, and is copied";
   if (found.is_changed)
@@ -53,16 +55,16 @@ void printText(const RecoverRequest& request, const mcap::Recovery& found) {
     if (damage.length == 0) {
       sayf("lost        {}\n", mcap::describe(damage));
     } else {
-      sayf("lost        {} bytes from byte {} on{}: {}\n", damage.length, damage.offset,
-           damage.messages > 0 ? fmt::format(", with {} messages", damage.messages) : "", damage.reason);
+      sayf("lost        {} from byte {} on{}: {}\n", counted(damage.length, "byte"), damage.offset,
+           damage.messages > 0 ? ", with " + counted(damage.messages, "message") : "", damage.reason);
     }
   }
   for (const std::string& note : found.info.contradictions) sayf("note        {}\n", note);
   if (found.info.unknown_records > 0) {
-    sayf("left out    {} records of kinds that MCAP does not know\n", found.info.unknown_records);
+    sayf("left out    {} of kinds that MCAP does not know\n", counted(found.info.unknown_records, "record"));
   }
-  sayf("recovered   {}: {} messages, {} attachments, {} metadata records\n", request.out.file, found.messages,
-       found.attachments, found.metadata);
+  sayf("recovered   {}: {}, {}, {}\n", request.out.file, counted(found.messages, "message"),
+       counted(found.attachments, "attachment"), counted(found.metadata, "metadata record"));
 }
 
 nlohmann::ordered_json toJson(const RecoverRequest& request, const mcap::Recovery& found) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "base/plural.hpp"
 #include "base/text.hpp"
 #include "control/nearest_name.hpp"
 #include "mcap/lookup.hpp"
@@ -91,7 +92,7 @@ void SelectedMessages::forEach(const std::string& doing, const std::function<boo
     if (!use(message)) break;
     if (++done % kShowSelectionEvery != 0 || doing.empty()) continue;
     const double part = std::min(1.0, static_cast<double>(done) / expected);
-    progress_.show(doing + " " + progressBar(part) + " " + std::to_string(done) + " messages");
+    progress_.show(doing + " " + progressBar(part) + " " + counted(done, "message"));
   }
   progress_.show("");
   if (!has_any && has_range_) throw nothingChosen(reader_, found_.files.string());

@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "base/plural.hpp"
 #include "base/text.hpp"
 #include "mcap/lookup.hpp"
 #include "mcap/reader.hpp"
@@ -110,8 +111,9 @@ class Booking {
                           [this](const mcap::MessageView& message) { book(message); });
     const auto tell = [&](std::uint64_t& repeated, std::vector<std::string>& findings) {
       if (repeated == 0) return;
-      findings.push_back(fmt::format("{}: {} messages come twice, or behind later ones of their writer", part.file,
-                                     std::exchange(repeated, 0)));
+      findings.push_back(fmt::format("{}: {} {} twice, or behind later ones of the same writer", part.file,
+                                     counted(repeated, "message"), repeated == 1 ? "comes" : "come"));
+      repeated = 0;
     };
     tell(repeated_, result_.missing);
     tell(repeated_foreign_, result_.remarks);

@@ -6,6 +6,7 @@
 
 #include "bag/subcommands.hpp"
 #include "bag/verify.hpp"
+#include "base/plural.hpp"
 #include "runtime/json.hpp"
 #include "runtime/progress_line.hpp"
 #include "runtime/recording_files.hpp"
@@ -26,8 +27,9 @@ void printText(const Verification& found) {
       sayf("            as received: by the bytes no sample is missing between a writer's first and last. It is\n");
       sayf("            traffic without manifests, so what was sent before and after that is not known\n");
     } else if (found.ledger.servicesHeard() > 0) {
-      sayf("            proven from the bytes: {} services vouch for what they sent, all of it is here\n",
-           found.ledger.servicesHeard());
+      const std::size_t services = found.ledger.servicesHeard();
+      sayf("            proven from the bytes: {} {} sent, all of it is here\n", counted(services, "service"),
+           services == 1 ? "vouches for what it" : "vouch for what they");
     } else {
       sayf("            by the bytes no sample is missing between a writer's first and last; the run went on\n");
       sayf("            when this ended, so nobody vouches for what was sent last\n");
@@ -43,7 +45,7 @@ void printText(const Verification& found) {
   }
   for (const std::string& text : found.remarks) sayf("note        {}\n", text);
   for (const std::string& text : found.log_times.findings()) sayf("note        {}\n", text);
-  sayf("messages    {} in {} streams\n", found.messages, found.ledger.streams().size());
+  sayf("messages    {} in {}\n", found.messages, counted(found.ledger.streams().size(), "stream"));
   sayf("size        {:.2f} MB\n", static_cast<double>(found.bytes) * 1e-6);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/plural.hpp"
 #include "runtime/json.hpp"
 #include "theory_tools.hpp"
 
@@ -156,10 +157,10 @@ nlohmann::ordered_json toJson(const Metrics& m) {
 }
 
 std::string toText(const Metrics& m) {
-  std::string text = fmt::format("{} steps, {:.4f} s, {} missed\n", m.steps, m.duration_s, m.missed_steps);
+  std::string text = fmt::format("{}, {:.4f} s, {} missed\n", counted(m.steps, "step"), m.duration_s, m.missed_steps);
   if (m.unrecorded_steps > 0) {
-    text += fmt::format("{} steps were not recorded: what is unknown without them is a dash, peaks are of the others\n",
-                        m.unrecorded_steps);
+    text += fmt::format("{} {} not recorded: what is unknown without is a dash, peaks are of the others\n",
+                        counted(m.unrecorded_steps, "step"), m.unrecorded_steps == 1 ? "was" : "were");
   }
   addRows(m.joints, "joints", text);
   addRows(m.task, "tip", text);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "base/plural.hpp"
 #include "html.hpp"
 #include "runtime/paths.hpp"
 
@@ -214,7 +215,7 @@ void writePage(const std::filesystem::path& file, const std::vector<FigureResult
   std::ostringstream page;
   page << kHead;
   page << kIntroduction << kSymbols;
-  page << fmt::format("<p>{} runs, {} of them reused from before; {:.0f} s. Made by {}.</p>\n", facts.runs,
+  page << fmt::format("<p>{}, {} of them reused from before; {:.0f} s. Made by {}.</p>\n", counted(facts.runs, "run"),
                       facts.reused, facts.elapsed_s, escaped(facts.build));
   writeSummary(page, results);
   const auto writeAll = [&](bool studies) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/plural.hpp"
 #include "runtime/json.hpp"
 #include "theory_tools.hpp"
 
@@ -106,7 +107,7 @@ nlohmann::ordered_json toJson(const Shadow& shadow) {
 }
 
 std::string toText(const Shadow& shadow) {
-  std::string text = fmt::format("{} steps, {:.4f} s{}\n", shadow.steps, shadow.duration_s,
+  std::string text = fmt::format("{}, {:.4f} s{}\n", counted(shadow.steps, "step"), shadow.duration_s,
                                  shadow.cut.empty() ? "" : ", cut off: " + shadow.cut);
   if (shadow.is_cold) {
     text += "standby: cold, so that who stood by did not compute: of a controller only what it commanded is recorded\n";

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/plural.hpp"
 #include "counterfactual.hpp"
 #include "messages/parameters.hpp"
 #include "report/theory_tools.hpp"
@@ -79,7 +80,7 @@ std::string headingOf(const Tenure& tenure, const Counterfactual& made) {
 
 void addGap(std::string& text, const Gap& gap, const std::string& what) {
   if (gap.steps == 0) return;
-  text += fmt::format("{} step{} {}, first step {}{}\n", gap.steps, gap.steps == 1 ? "" : "s", what, gap.first_step,
+  text += fmt::format("{} {}, first step {}{}\n", counted(gap.steps, "step"), what, gap.first_step,
                       gap.reason.empty() ? "" : ": " + gap.reason);
 }
 
@@ -132,9 +133,9 @@ std::string toText(const Counterfactual& made) {
     text += fmt::format("; changed {} on the way, as recorded",
                         made.changes == 1 ? std::string("once") : std::to_string(made.changes) + " times");
   }
-  text +=
-      fmt::format("\n{} steps, {:.4f} s{}\n", made.steps, static_cast<double>(made.steps - 1) * scenario.stepSeconds(),
-                  made.cut.empty() ? "" : ", cut off: " + made.cut);
+  text += fmt::format("\n{}, {:.4f} s{}\n", counted(made.steps, "step"),
+                      static_cast<double>(made.steps - 1) * scenario.stepSeconds(),
+                      made.cut.empty() ? "" : ", cut off: " + made.cut);
   text += fmt::format("{:<56}{:>12}{:>12}  {}\n", "its effort less the recorded one", "rms", "largest", "at step");
   add(text,
       made.isOfOneController()
@@ -145,7 +146,7 @@ std::string toText(const Counterfactual& made) {
     add(text, headingOf(made.tenures[i], made), made.tenures[i].difference, scenario);
   }
   if (made.tenures.size() > kShownTenures) {
-    text += fmt::format("and {} more holders: --json has them all\n", made.tenures.size() - kShownTenures);
+    text += fmt::format("and {}: --json has them all\n", counted(made.tenures.size() - kShownTenures, "more holder"));
   }
   addGap(text, made.without_inputs, "not recorded whole: the law was not asked");
   addGap(text, made.without_effort, "for which the law has no effort");

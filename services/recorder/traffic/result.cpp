@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/plural.hpp"
 #include "base/text.hpp"
 #include "runtime/json.hpp"
 
@@ -47,7 +48,8 @@ ExitCode exitCodeOf(const TrafficResult& result, const TrafficOptions& options) 
 std::string textOf(const TrafficResult& result, const TrafficOptions& options) {
   std::string text = fmt::format("{}: {}\n", fmt::join(result.files, ", "), result.summary);
   text += fmt::format("recorded    {:.1f} s of domain {} on {}\n", result.seconds, options.domain, placeOf(options));
-  text += fmt::format("messages    {} of {} topics, {} lost\n", result.messages, result.topics.size(), lostIn(result));
+  text += fmt::format("messages    {} of {}, {} lost\n", result.messages, counted(result.topics.size(), "topic"),
+                      lostIn(result));
   text += fmt::format("size        {:.2f} MB", static_cast<double>(result.bytes) * 1e-6);
   constexpr std::size_t kMostProblems = 20;
   for (std::size_t i = 0; i < std::min(result.problems.size(), kMostProblems); ++i) {

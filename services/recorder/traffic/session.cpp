@@ -7,6 +7,7 @@
 #include <functional>
 #include <set>
 
+#include "base/plural.hpp"
 #include "base/text.hpp"
 #include "booking.hpp"
 #include "mcap/lookup.hpp"
@@ -157,10 +158,10 @@ void TrafficSession::showProgress() {
   if (!recording_ || isOver()) return;
   std::set<std::string> topics;
   for (const auto& [key, stream] : streams_) topics.insert(stream.topic());
-  line_.show(fmt::format("{}: {:.0f} s, {} topics, {} messages, {:.2f} MB, {} lost (Ctrl-C ends it)",
+  line_.show(fmt::format("{}: {:.0f} s, {}, {}, {:.2f} MB, {} lost (Ctrl-C ends it)",
                          recording_->path().filename().string(), static_cast<double>(elapsedMilliseconds()) * 1e-3,
-                         topics.size(), recording_->messages(), static_cast<double>(recording_->bytes()) * 1e-6,
-                         ledger_.missing()));
+                         counted(topics.size(), "topic"), counted(recording_->messages(), "message"),
+                         static_cast<double>(recording_->bytes()) * 1e-6, ledger_.missing()));
 }
 
 void TrafficSession::noteWhatCannotBeRecorded(const Recording& recording) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/plural.hpp"
+
 namespace baton {
 namespace {
 
@@ -35,6 +37,13 @@ TEST(Text, AFileNameLeadsToNoOtherFolder) {
                            "a\xc2\x9b.mcap", "/root/.ssh/authorized_keys", "a.mcap/"}) {
     EXPECT_FALSE(isFileName(name, ".mcap")) << name;
   }
+}
+
+TEST(Counted, HasAnSUnlessThereIsOne) {
+  EXPECT_EQ(counted(0, "message"), "0 messages");
+  EXPECT_EQ(counted(1, "message"), "1 message");
+  EXPECT_EQ(counted(2, "more file"), "2 more files");
+  EXPECT_EQ(std::string(areOrIs(1)) + " " + areOrIs(2), "is are");
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ TEST(LossText, NamesWhatWasLost) {
   EXPECT_EQ(lossText(dds::topics::kContact, 0, 0, 0), "");
   EXPECT_EQ(lossText(dds::topics::kContact, 3, 0, 0), "contact: 3 samples lost on the way");
   EXPECT_EQ(lossText(dds::topics::kEvent, 1, 2, 4),
-            "event: 1 samples lost on the way, 2 that could not be read, 4 of strangers, not heard");
+            "event: 1 sample lost on the way, 2 that could not be read, 4 of strangers, not heard");
 }
 
 TEST(LossText, AStatusThatWasReplacedIsNotLost) {
