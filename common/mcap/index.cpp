@@ -10,6 +10,7 @@
 #include "base/plural.hpp"
 #include "base/text.hpp"
 #include "mcap/crc.hpp"
+#include "mcap/foreign.hpp"
 #include "mcap/shape.hpp"
 
 namespace baton::mcap {
@@ -26,27 +27,11 @@ std::string beginOf(const InputFile& file) {
 
 /// Files that are given in the place of a recording: what they are, and what to do.
 std::string whatBeginsWith(const std::string& begin) {
-  struct Kind {
-    std::string_view magic;
-    const char* text;
-  };
-  using namespace std::string_view_literals;
-  static constexpr std::array kKinds{
-      Kind{"SQLite format 3",
-           "it is an SQLite database, as rosbag2 records in (.db3): `ros2 bag convert` or `mcap convert` makes an MCAP "
-           "file of it"},
-      Kind{"#ROSBAG V", "it is a ROS 1 bag: `mcap convert` makes an MCAP file of it"},
-      Kind{"\x28\xb5\x2f\xfd"sv, "it is compressed with zstd: decompress it with `zstd -d` first"},
-      Kind{"\x1f\x8b"sv, "it is compressed with gzip: decompress it with `gunzip` first"},
-      Kind{"BZh", "it is compressed with bzip2: decompress it with `bunzip2` first"},
-      Kind{"\xfd\x37zXZ"sv, "it is compressed with xz: decompress it with `unxz` first"},
-      Kind{"\x04\x22\x4d\x18"sv, "it is compressed with LZ4: decompress it with `lz4 -d` first"},
-      Kind{"PK\x03\x04"sv, "it is a zip archive: take the .mcap file out of it with `unzip` first"},
-      Kind{"\x89HDF"sv, "it is an HDF5 file; give a recording, whose name ends in .mcap"},
-  };
   if (begin.empty()) return "it is empty, nothing was written into it; give another file";
-  for (const Kind& kind : kKinds) {
-    if (begin.starts_with(kind.magic)) return kind.text;
+  if (const ForeignFormat* format = foreignFormat(begin)) {
+    const std::string remedy = format->remedy;
+    return std::string("it is ") + format->what +
+           (remedy.empty() ? "; give a recording, whose name ends in .mcap" : ": " + remedy);
   }
   if (begin.find_first_not_of('\0') == std::string::npos) {
     return "it begins with " + zerosText(begin.size()) + "; what it was cannot be told, use a copy of it";

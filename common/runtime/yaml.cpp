@@ -17,6 +17,7 @@
 #include "base/plural.hpp"
 #include "base/text.hpp"
 #include "control/nearest_name.hpp"
+#include "mcap/foreign.hpp"
 #include "runtime/paths.hpp"
 
 namespace baton {
@@ -64,6 +65,16 @@ std::optional<double> parseNumber(const std::string& scalar) {
 /// Files that are given in the place of a scenario or a robot; empty for what may be YAML.
 std::string otherFormat(std::string_view text) {
   if (text.starts_with("\x89MCAP")) return "a recording; `baton rerun` does a recorded run again";
+  if (const mcap::ForeignFormat* format = mcap::foreignFormat(text)) {
+    return std::string("a file that is ") + format->what +
+           (format->is_packed ? std::string(": ") + format->remedy : "; give a file that ends in .yaml");
+  }
+  const auto is_zero = [&](std::size_t i) { return text[i] == '\0'; };
+  const bool is_wide =
+      text.size() > 3 && is_zero(0) != is_zero(1) && is_zero(0) == is_zero(2) && is_zero(1) == is_zero(3);
+  if (is_wide || text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
+    return "text in UTF-16; save it as UTF-8";
+  }
   const std::size_t begin = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   if (begin != std::string_view::npos && text[begin] == '<') {
     return "XML, as a robot description (URDF) is; a robot's file lists joints and masses as deploy/robots/rpp.yaml "

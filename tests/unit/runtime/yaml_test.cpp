@@ -290,6 +290,17 @@ TEST(YamlFile, OfAnotherFormatIsToldWhatItIs) {
             0U);
   EXPECT_EQ(refusalOf("\x89MCAP0\r\n" + std::string(3 << 20, 'x')).find(file + ": expected YAML, found a recording"),
             0U);
+  using namespace std::string_literals;
+  for (const auto& [text, found] :
+       {std::pair("\x1f\x8b\x08\0\0"s, "a file that is compressed with gzip: decompress it with `gunzip` first"),
+        std::pair("PK\x03\x04\0"s, "a file that is a zip archive: take the file out of it with `unzip` first"),
+        std::pair("#ROSBAG V2.0\n"s, "a file that is a ROS 1 bag; give a file that ends in .yaml"),
+        std::pair("SQLite format 3\0"s, "a file that is an SQLite database, as rosbag2 records in (.db3); give"),
+        std::pair("\xff\xfen\0a\0"s, "text in UTF-16; save it as UTF-8"),
+        std::pair("\0n\0a"s, "text in UTF-16; save it as UTF-8")}) {
+    const std::string message = refusalOf(text);
+    EXPECT_EQ(message.find(file + ": expected YAML, found " + found), 0U) << message;
+  }
   std::filesystem::remove(file);
 }
 
