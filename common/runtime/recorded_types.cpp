@@ -52,7 +52,8 @@ const schema::Type* RecordedTypes::read(const mcap::Channel& channel, const mcap
     throw UsageError("the text of schema " + schema.name + ", definition of " + problem->definition + ", " +
                      problem->text);
   }
-  throw UsageError("expected the type " + schema.name + " in its schema's text, found it nowhere" +
+  throw UsageError("expected the type " + (schema.name.empty() ? "''" : schema.name) +
+                   " in its schema's text, found it nowhere" +
                    (problems.empty() ? "" : "; what cannot be read there: " + problems.front().text));
 }
 

@@ -17,6 +17,7 @@
 #include "bag/sequence_gaps.hpp"
 #include "bag/verdict.hpp"
 #include "base/error.hpp"
+#include "base/plural.hpp"
 #include "base/text.hpp"
 #include "dds/types.hpp"
 #include "mcap/lookup.hpp"
@@ -80,6 +81,9 @@ RecordingVerdict verdictOn(const BagSummary& bag) {
                                                                   : RecordingVerdict::kIncomplete;
 }
 
+/// What a file may leave empty, for a line that goes on behind it.
+std::string orUnknown(const std::string& text) { return text.empty() ? "unknown" : text; }
+
 /// What the verdict rests on, in a sentence.
 std::string reasonFor(const BagSummary& bag) {
   if (!bag.damage.empty()) return bag.damage.front();
@@ -88,7 +92,7 @@ std::string reasonFor(const BagSummary& bag) {
     return "it contradicts itself, so that no certificate holds for it";
   }
   if (!bag.holes.empty()) return fmt::format("{}", fmt::join(bag.holes, "; "));
-  if (bag.certificate) return "by its certificate: " + valueOf(*bag.certificate, "summary");
+  if (bag.certificate) return "by its certificate: " + orUnknown(valueOf(*bag.certificate, "summary"));
   if (!bag.next_part.empty()) return "a part of a recording that goes on in " + bag.next_part;
   return bag.run.empty() ? "finished; it was not recorded by Baton and has no certificate" : "it has no certificate";
 }
@@ -180,7 +184,7 @@ void printText(const BagSummary& bag) {
   for (std::size_t i = 1; i < bag.damage.size(); ++i) sayf("            {}\n", bag.damage[i]);
   for (const std::string& note : notesOn(bag)) sayf("note        {}\n", note);
   if (!bag.run.empty()) {
-    const auto of = [&](const char* key) { return valueOf(bag.run, key); };
+    const auto of = [&](const char* key) { return orUnknown(valueOf(bag.run, key)); };
     if (of("kind") == "traffic") {
       sayf("recorded    traffic of domain {} on {} (interfaces: {}), begun {}\n", of("domain"), of("host"),
            of("interfaces"), of("begun"));
@@ -195,7 +199,8 @@ void printText(const BagSummary& bag) {
   sayf("size        {:.2f} MB, messages compressed {:.2f} : 1\n", static_cast<double>(bag.info.file_bytes) * 1e-6,
        bag.compression());
   for (const mcap::AttachmentIndex& attachment : bag.attachments) {
-    sayf("attachment  {} ({}, {} bytes)\n", attachment.name, attachment.media_type, attachment.data_size);
+    sayf("attachment  {} ({}, {})\n", attachment.name, orUnknown(attachment.media_type),
+         counted(attachment.data_size, "byte"));
   }
   printTopics(bag);
 }

@@ -35,7 +35,8 @@ void printText(const Verification& found) {
       sayf("            when this ended, so nobody vouches for what was sent last\n");
     }
     sayf("            and the certificate in the file agrees; every checksum is right\n");
-    if (found.summary != "complete") sayf("            by its certificate: {}\n", found.summary);
+    if (found.summary != "complete")
+      sayf("            by its certificate: {}\n", found.summary.empty() ? "unknown" : found.summary);
   }
   for (const auto* findings : {&found.damage, &found.cuts, &found.missing}) {
     for (const std::string& text : *findings) sayf("            {}\n", text);
