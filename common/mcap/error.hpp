@@ -12,6 +12,12 @@ class FormatError : public UsageError {
   using UsageError::UsageError;
 };
 
+/// Nothing in it is MCAP.
+class NotARecording : public FormatError {
+ public:
+  using FormatError::FormatError;
+};
+
 /// The operating system did not take the bytes: disk full, file size limit, input/output error. The message names the
 /// file, how many bytes of how many went in, and where.
 class WriteError : public Error {

@@ -371,7 +371,7 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
   std::array<std::byte, kMagic.size()> magic{};
   if (file.size() >= kMagic.size()) file.read(0, magic);
   if (magic != kMagic) {
-    throw FormatError(file.path().string() + " is not an MCAP recording: " + whatBeginsWith(beginOf(file)));
+    throw NotARecording(file.path().string() + " is not an MCAP recording: " + whatBeginsWith(beginOf(file)));
   }
   SummaryProblem problem;
   SummaryClaims claims;

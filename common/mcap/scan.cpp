@@ -126,7 +126,7 @@ class Scan {
       return true;
     }
     const std::string what = "it begins with " + opcodeName(place.opcode) + " where a Header is required";
-    if (!options_.on_damage) throw FormatError(file_.path().string() + " is not an MCAP recording: " + what);
+    if (!options_.on_damage) throw NotARecording(file_.path().string() + " is not an MCAP recording: " + what);
     options_.on_damage({.offset = place.offset, .reason = what});
     return false;
   }

@@ -10,6 +10,7 @@
 
 #include "base/number.hpp"
 #include "control/nearest_name.hpp"
+#include "mcap/error.hpp"
 #include "time/pacer.hpp"
 
 namespace baton {
@@ -86,6 +87,11 @@ void runCommand(CLI::App& app, int argc, const char* const* argv) {
   guardNumbers(app);
   try {
     app.parse(argc, argv);
+  } catch (const mcap::NotARecording&) {
+    throw;
+  } catch (const mcap::FormatError& error) {
+    throw UsageError(error.what() + std::string("; `") + app.get_name() +
+                     " bag recover` makes a recording of all that can be read");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) {  // the help or the version
       app.exit(error);

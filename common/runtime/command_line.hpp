@@ -16,7 +16,7 @@ namespace baton {
 [[nodiscard]] bool parseCommandLine(CLI::App& app, int argc, const char* const* argv);
 
 /// Parses a line that begins with a command, which runs as it is met, or prints the help that was asked for. Throws
-/// UsageError for a line that is wrong: in which command, and what.
+/// UsageError for a line that is wrong: in which command, and what; of a damaged recording also what to do.
 void runCommand(CLI::App& app, int argc, const char* const* argv);
 
 /// --cell: refuses a name that is not 1 to 31 of A-Z a-z 0-9 _ -, as it becomes part of a file's name and of a DDS

@@ -3,7 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
+#include <string>
+#include <vector>
+
+#include "mcap/error.hpp"
 
 namespace baton {
 namespace {
@@ -127,6 +132,25 @@ TEST(CommandLine, ARateIsOneThatCanBeSeen) {
   for (const char* word : {"0", "-1", "nan", "inf", "1e-300", "", "1x"}) {
     EXPECT_THROW((void)parseRate("rate", word), UsageError) << word;
   }
+}
+
+TEST(CommandLine, WhatStumblesOverADamagedRecordingNamesTheRemedy) {
+  const auto refusal = [](auto error) {
+    CLI::App app("test");
+    app.name("baton");
+    app.add_subcommand("hash", "")->callback([&] { throw error; });
+    const char* words[] = {"baton", "hash"};
+    try {
+      runCommand(app, 2, words);
+    } catch (const UsageError& refused) {
+      return std::string(refused.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal(mcap::FormatError("its CRC is wrong")),
+            "its CRC is wrong; `baton bag recover` makes a recording of all that can be read");
+  EXPECT_EQ(refusal(mcap::NotARecording("it is text")), "it is text");
+  EXPECT_EQ(refusal(UsageError("no such step")), "no such step");
 }
 
 }  // namespace
