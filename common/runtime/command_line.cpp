@@ -68,6 +68,21 @@ Reached reachedBy(const CLI::App& app, int argc, const char* const* argv) {
   return reached;
 }
 
+/// What CLI11 says, where its words are not ours.
+std::string textOf(const CLI::ParseError& error, int argc, const char* const* argv) {
+  std::string text = error.what();
+  static const std::string kTwice = ": At Most 1 required but received ", kDomain = "--domain:";
+  if (const std::size_t at = text.find(kTwice); at != std::string::npos) {
+    text = text.substr(0, at) + ": expected once, found " + text.substr(at + kTwice.size()) + " times";
+  }
+  const bool is_given =
+      std::any_of(argv, argv + argc, [](const char* word) { return std::string_view(word).starts_with("--domain"); });
+  if (text.starts_with(kDomain) && !is_given) {
+    text = "BATON_DOMAIN in the environment:" + text.substr(kDomain.size());
+  }
+  return text;
+}
+
 }  // namespace
 
 bool parseCommandLine(CLI::App& app, int argc, const char* const* argv) {
@@ -78,7 +93,7 @@ bool parseCommandLine(CLI::App& app, int argc, const char* const* argv) {
     app.exit(help);
     return false;
   } catch (const CLI::ParseError& error) {
-    throw UsageError(std::string(error.what()) + " (see --help)");
+    throw UsageError(textOf(error, argc, argv) + " (see --help)");
   }
   return true;
 }
@@ -105,7 +120,7 @@ void runCommand(CLI::App& app, int argc, const char* const* argv) {
           unknownName(reached.words.empty() ? "command" : "command of" + reached.words, reached.next_word, known));
     }
     const std::string about = reached.words.empty() ? "" : reached.words.substr(1) + ": ";
-    throw UsageError(about + error.what() + "; see `" + app.get_name() + reached.words + " --help`");
+    throw UsageError(about + textOf(error, argc, argv) + "; see `" + app.get_name() + reached.words + " --help`");
   }
 }
 

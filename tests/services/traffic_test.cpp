@@ -69,6 +69,19 @@ TEST(TrafficOptions, WhatIsNoLimitIsRefused) {
   }
 }
 
+TEST(TrafficOptions, ALimitOutOfRangeIsShownAsItWasMeant) {
+  const auto refusal = [](const Strings& wrong) {
+    try {
+      (void)parsed(wrong);
+    } catch (const UsageError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refusal({"--duration", "1e300"}), "--duration: expected 0.001 to 1e9 s, found 1e+300");
+  EXPECT_EQ(refusal({"--max-MB", "1e-300"}), "--max-MB: expected 0.001 to 1e9 MB, found 1e-300");
+}
+
 TEST(Partitions, AllOfThemAreReadAndThoseWhoSetNone) {
   const Strings all = readPartitions({});
   EXPECT_EQ(all, (Strings{"*", ""})) << "in DDS * alone does not match a writer without";

@@ -1,6 +1,7 @@
 #include "traffic/options.hpp"
 
 #include <fnmatch.h>
+#include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,13 +21,13 @@ std::uint64_t bytesIn(const std::string& option, double megabytes, double least)
   constexpr double kMost_MB = 1e9;
   if (megabytes >= least && megabytes <= kMost_MB) return static_cast<std::uint64_t>(std::llround(megabytes * 1e6));
   throw UsageError(option + ": expected " + (least > 0.0 ? "0.001" : "0") + " to 1e9 MB, found " +
-                   std::to_string(megabytes));
+                   fmt::format("{:g}", megabytes));
 }
 
 std::uint64_t millisecondsIn(const std::string& option, double seconds) {
   constexpr double kMost_s = 1e9;
   if (seconds >= 0.001 && seconds <= kMost_s) return static_cast<std::uint64_t>(std::llround(seconds * 1e3));
-  throw UsageError(option + ": expected 0.001 to 1e9 s, found " + std::to_string(seconds));
+  throw UsageError(option + ": expected 0.001 to 1e9 s, found " + fmt::format("{:g}", seconds));
 }
 
 }  // namespace

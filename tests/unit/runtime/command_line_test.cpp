@@ -153,5 +153,30 @@ TEST(CommandLine, WhatStumblesOverADamagedRecordingNamesTheRemedy) {
   EXPECT_EQ(refusal(UsageError("no such step")), "no such step");
 }
 
+TEST(CommandLine, AnOptionThatIsGivenTwiceIsToldInOurWords) {
+  EXPECT_EQ(refusalOf({"swap", "--blend", "1", "--blend", "2"}),
+            "swap: --blend: expected once, found 2 times; see `baton swap --help`");
+}
+
+TEST(CommandLine, AWrongDomainOfTheEnvironmentIsNotBlamedOnAnOption) {
+  const auto refusal = [](std::vector<const char*> words) {
+    CLI::App app("test");
+    int domain = 0;
+    addDomain(app, domain)->envname("BATON_TEST_DOMAIN");
+    words.insert(words.begin(), "baton");
+    try {
+      (void)parseCommandLine(app, static_cast<int>(words.size()), words.data());
+    } catch (const UsageError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  ASSERT_EQ(::setenv("BATON_TEST_DOMAIN", "abc", 1), 0);
+  EXPECT_EQ(refusal({}).find("BATON_DOMAIN in the environment: expected a whole number from 0 to 232, found 'abc'"), 0U)
+      << refusal({});
+  EXPECT_EQ(refusal({"--domain", "x"}).find("--domain: expected a whole number"), 0U) << refusal({"--domain", "x"});
+  ASSERT_EQ(::unsetenv("BATON_TEST_DOMAIN"), 0);
+}
+
 }  // namespace
 }  // namespace baton
