@@ -156,10 +156,12 @@ CLI::Option* addClock(CLI::App& app, dds::WallClock& clock) {
       "ns from the machine's steady clock to the run's wall clock (default: as the wall clock is now)");
 }
 
-double parseRate(const std::string& what, const std::string& text) {
+double parseRate(const std::string& what, const std::string& text, double highest) {
   if (text == "max") return 0.0;
   const auto rate = numberIn<double>(text);
-  if (!rate || *rate < kMinRate) throw UsageError(what + ": " + refusal("a number from 1e-7 on, or max", text));
+  if (!rate || *rate < kMinRate || *rate > highest) {
+    throw UsageError(what + ": " + refusal(fmt::format("a number from {:g} to {:g}, or max", kMinRate, highest), text));
+  }
   return *rate;
 }
 

@@ -28,8 +28,11 @@ CLI::Option* addDomain(CLI::App& app, int& domain);
 CLI::Option* addTransport(CLI::App& app, dds::Transport& transport);
 /// --clock-offset: the clock of a run that has begun, so that this process counts the same time.
 CLI::Option* addClock(CLI::App& app, dds::WallClock& clock);
-/// A rate as people write it: seconds per second, or max, which is 0. Throws UsageError, saying `what` it was for.
-[[nodiscard]] double parseRate(const std::string& what, const std::string& text);
+/// What is recorded may be of years.
+inline constexpr double kMaxReplayRate = 1e9;
+/// A rate as people write it: seconds per second, up to `highest`, or max, which is 0. Throws UsageError, saying `what`
+/// it was for.
+[[nodiscard]] double parseRate(const std::string& what, const std::string& text, double highest);
 /// For numbers that are finite and not negative; CLI's own check lets NaN pass.
 [[nodiscard]] CLI::Validator notNegative();
 /// For counts: whole numbers from 1 on.

@@ -37,7 +37,7 @@ double readRate(const YamlMap& map, SimMode mode) {
     if (node && (is_max || node->number() != 1.0)) node->refuse("1, the only rate of mode realtime");
     return 1.0;
   }
-  return !node || is_max ? 0.0 : node->number({kMinRate, 1000.0, "times real time, or max"});
+  return !node || is_max ? 0.0 : node->number({kMinRate, kMaxRate, "times real time, or max"});
 }
 
 /// A holder is given up in the step after those, so they and that step last 20 ms at most; at least one is forgiven.

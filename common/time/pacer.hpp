@@ -9,6 +9,8 @@ namespace baton {
 
 /// Slower than that looks like a standstill.
 inline constexpr double kMinRate = 1e-7;
+/// Faster than any simulation here: `max` is meant.
+inline constexpr double kMaxRate = 1000.0;
 
 class Pacer {
  public:

@@ -17,6 +17,7 @@
 #include "runtime/scenario.hpp"
 #include "runtime/service_options.hpp"
 #include "runtime/timing.hpp"
+#include "time/pacer.hpp"
 #include "timing_text.hpp"
 
 namespace baton {
@@ -172,7 +173,8 @@ void addSimCommands(CLI::App& app, const std::shared_ptr<CellTarget>& target, Ex
       ->required();
   add("rate", "simulated seconds per second, or max", msg::SIM_RATE)
       ->add_option_function<std::string>(
-          "rate", [request](const std::string& text) { request->rate(parseRate("sim rate", text)); }, "X or max")
+          "rate", [request](const std::string& text) { request->rate(parseRate("sim rate", text, kMaxRate)); },
+          "X or max")
       ->required();
 }
 

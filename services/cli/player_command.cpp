@@ -206,7 +206,9 @@ void addPlayerCommand(CLI::App& app, ExitCode& exit_code) {
       ->required();
   add("rate", "recorded seconds per second, or max", msg::REPLAY_RATE)
       ->add_option_function<std::string>(
-          "rate", [=](const std::string& text) { arguments->request.rate(parseRate("player rate", text)); }, "X or max")
+          "rate",
+          [=](const std::string& text) { arguments->request.rate(parseRate("player rate", text, kMaxReplayRate)); },
+          "X or max")
       ->required();
 }
 

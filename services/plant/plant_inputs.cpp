@@ -198,8 +198,8 @@ void Plant::onSimRequest(const msg::SimRequest& request) {
         }
         break;
       case msg::SIM_RATE:
-        if (!std::isfinite(request.rate()) || (request.rate() != 0.0 && request.rate() < kMinRate)) {
-          refuse("expected a rate from 1e-7 on, or 0 for as fast as possible");
+        if (request.rate() != 0.0 && !(request.rate() >= kMinRate && request.rate() <= kMaxRate)) {
+          refuse("expected a rate from 1e-7 to 1000, or 0 for as fast as possible");
         } else if (isRealtime()) {
           refuse("a realtime run has rate 1");
         } else {

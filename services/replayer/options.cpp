@@ -11,6 +11,8 @@
 namespace baton {
 namespace {
 
+constexpr std::int64_t kMostReaders = 1000;
+
 /// The value behind --loop; none stands for passes without end.
 std::uint32_t parsePasses(const std::string& text) {
   if (text.empty()) return 0;
@@ -88,6 +90,7 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
                           ->type_name("[N]");
   app.add_flag("--paused", options.starts_paused, "wait in front of the first message until something is asked for");
   app.add_option("--wait-for", options.wait_for, "wait until this many processes read each topic")
+      ->check(wholeBetween(0, kMostReaders))
       ->capture_default_str();
   app.add_option("--wait-for-readers", options.wait_for_readers,
                  "wait until each of these services reads a topic: recorder,environment")
@@ -101,7 +104,7 @@ bool parseReplayOptions(int argc, const char* const* argv, ReplayOptions& option
   addScheduling(app, options.scheduling);
   app.add_flag("--json", options.json, "the summary as a JSON object");
   if (!parseCommandLine(app, argc, argv)) return false;
-  options.rate = parseRate("--rate", rate);
+  options.rate = parseRate("--rate", rate, kMaxReplayRate);
   options.remap = parseRemap(remap);
   if (loop->count() > 0) options.passes = parsePasses(passes);
   expectOneRange(options.range);

@@ -54,7 +54,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::istringstream lines(std::string(reinterpret_cast<const char*>(data), size));
   for (std::string word; std::getline(lines, word);) {
     tryTo([&] {
-      const double rate = parseRate("--rate", word);
+      const double rate = parseRate("--rate", word, kMaxReplayRate);
       require(std::isfinite(rate) && (rate == 0.0 || rate >= 1e-7));
     });
     tryTo([&] { (void)parseCpus(word); });

@@ -34,7 +34,7 @@ TEST(ReplayOptions, SpeakInARunOfTheirOwnUnlessTold) {
 TEST(ReplayOptions, RateIsAFactorOrMax) {
   EXPECT_EQ(parsed({"run.mcap", "--rate", "0.5"}).rate, 0.5);
   EXPECT_EQ(parsed({"run.mcap", "--rate", "max"}).rate, 0.0);
-  for (const char* wrong : {"0", "-1", "nan", "inf", "2x", "fast", ""}) {
+  for (const char* wrong : {"0", "-1", "nan", "inf", "1e300", "2x", "fast", ""}) {
     EXPECT_THROW((void)parsed({"run.mcap", "--rate", wrong}), UsageError) << wrong;
   }
 }
@@ -78,6 +78,7 @@ TEST(ReplayOptions, ReadersAreAListThatLeavesTheFileAlone) {
   EXPECT_EQ(options.wait_for_readers, (std::vector<std::string>{"recorder", "environment"}));
   EXPECT_EQ(options.file, "run.mcap");
   EXPECT_EQ(options.wait_for, 2U);
+  EXPECT_THROW((void)parsed({"run.mcap", "--wait-for", "99999999999"}), UsageError) << "it would wait for ever";
 }
 
 TEST(ReplayOptions, APartitionMayBeTheOneWithoutAName) {

@@ -126,11 +126,12 @@ TEST(CommandLine, ANumberWithACommaIsToldOfThePoint) {
 }
 
 TEST(CommandLine, ARateIsOneThatCanBeSeen) {
-  EXPECT_EQ(parseRate("rate", "max"), 0.0);
-  EXPECT_EQ(parseRate("rate", "+2"), 2.0);
-  EXPECT_EQ(parseRate("rate", "0.5"), 0.5);
-  for (const char* word : {"0", "-1", "nan", "inf", "1e-300", "", "1x"}) {
-    EXPECT_THROW((void)parseRate("rate", word), UsageError) << word;
+  EXPECT_EQ(parseRate("rate", "max", 1000.0), 0.0);
+  EXPECT_EQ(parseRate("rate", "+2", 1000.0), 2.0);
+  EXPECT_EQ(parseRate("rate", "0.5", 1000.0), 0.5);
+  EXPECT_EQ(parseRate("rate", "1000", 1000.0), 1000.0);
+  for (const char* word : {"0", "-1", "nan", "inf", "1e-300", "1e300", "1001", "", "1x"}) {
+    EXPECT_THROW((void)parseRate("rate", word, 1000.0), UsageError) << word;
   }
 }
 
