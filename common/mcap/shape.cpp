@@ -1,12 +1,26 @@
 #include "mcap/shape.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
+#include <string>
 
 #include "mcap/crc.hpp"
 
 namespace baton::mcap {
 namespace {
+
+/// Whether the name of a compression can lie there. Any letter is one: a chunk that is compressed in an unknown way is
+/// a chunk.
+bool isCompressionName(const InputFile& file, std::uint64_t offset) {
+  constexpr std::size_t kLongest = 32;
+  std::string name(
+      static_cast<std::size_t>(std::min<std::uint64_t>(numberAt<std::uint32_t>(file, offset), kLongest + 1)), '\0');
+  const std::uint64_t begin = offset + sizeof(std::uint32_t);
+  if (name.size() > kLongest || begin + name.size() > file.size()) return false;
+  file.read(begin, std::as_writable_bytes(std::span(name)));
+  return std::ranges::all_of(name, [](unsigned char c) { return std::isgraph(c) != 0; });
+}
 
 /// Bytes of a body that the known fields take, by the lengths among them; nothing when they are more than there are.
 /// For kinds that are large, or that lie between them.
@@ -23,9 +37,8 @@ std::optional<std::uint64_t> knownBytes(const InputFile& file, const RecordPlace
   bool is_sound = true;
   switch (place.opcode) {
     case Opcode::kChunk: {
-      constexpr std::uint64_t kNameAt = 8 + 8 + 8 + 4, kLongestName = 4;
-      is_sound =
-          numberAt<std::uint32_t>(file, body + kNameAt) <= kLongestName && add(kNameAt) && addSized() && addLong();
+      constexpr std::uint64_t kNameAt = 8 + 8 + 8 + 4;
+      is_sound = isCompressionName(file, body + kNameAt) && add(kNameAt) && addSized() && addLong();
       break;
     }
     case Opcode::kMessageIndex:

@@ -274,15 +274,28 @@ TEST_P(PlainDamageTest, ARecordTooLongForTheFileIsACut) {
 }
 
 TEST_P(PlainDamageTest, AnUnknownCompressionIsNamed) {
-  FileBuilder file;
-  appendChunkHead(file.bytes, {.compression = "rar"});
-  file.finish();
-  saveFile(path, file.bytes);
-  try {
-    const Reader reader(path);
-    FAIL();
-  } catch (const FormatError& error) {
-    EXPECT_NE(std::string(error.what()).find("\"rar\""), std::string::npos);
+  for (const std::string name : {"rar", "snappy", "a-compression-of-its-own"}) {
+    FileBuilder file;
+    appendChunkHead(file.bytes, {.compression = name});
+    Bytes records;
+    appendChannel(records, {.id = ChannelId{1}, .topic = "a"});
+    appendMessage(records, {.channel_id = ChannelId{1}, .log_time_ns = 1});
+    file.chunk(records, 1, 1);
+    file.finish();
+    saveFile(path, file.bytes);
+    try {
+      const Reader reader(path);
+      FAIL();
+    } catch (const FormatError& error) {
+      EXPECT_NE(std::string(error.what()).find('"' + name + '"'), std::string::npos) << error.what();
+    }
+    std::vector<Damage> damage;
+    ReaderOptions options;
+    options.on_damage = [&](const Damage& found) { damage.push_back(found); };
+    EXPECT_EQ(samplesOf(Reader(path, options)).size(), 1U);
+    ASSERT_EQ(damage.size(), 1U);
+    EXPECT_NE(damage[0].reason.find('"' + name + '"'), std::string::npos) << damage[0].reason;
+    EXPECT_EQ(damage[0].chunks, 1U);
   }
 }
 
