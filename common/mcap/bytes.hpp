@@ -23,6 +23,10 @@ static_assert(std::endian::native == std::endian::little, "MCAP numbers are copi
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<const std::byte>;
 
+[[nodiscard]] inline std::string_view asText(ByteView bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 [[nodiscard]] inline ByteView asBytes(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }

@@ -47,15 +47,12 @@ ChannelId Copier::channel(const Channel& channel, const Schema* schema) {
   if (const auto known = known_.find(&channel); known != known_.end()) return known->second;
   Channel copy = channel;
   copy.schema_id = schema == nullptr ? kNoSchema : writer_.addSchema(schema->name, schema->encoding, schema->data);
-  const auto same = std::find_if(written_.begin(), written_.end(), [&](const Channel& one) {
-    copy.id = one.id;
-    return one == copy;
-  });
-  if (same == written_.end()) {
-    copy.id = writer_.addChannel(copy.topic, copy.message_encoding, copy.schema_id, copy.metadata);
-    written_.push_back(copy);
-  }
-  return known_[&channel] = copy.id;
+  copy.id = ChannelId{0};
+  Bytes content;
+  appendChannel(content, copy);
+  const auto [same, is_new] = written_.try_emplace(std::string(asText(content)));
+  if (is_new) same->second = writer_.addChannel(copy.topic, copy.message_encoding, copy.schema_id, copy.metadata);
+  return known_[&channel] = same->second;
 }
 
 void Copier::channels(const Reader& reader) {

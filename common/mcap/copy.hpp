@@ -41,7 +41,7 @@ class Copier {
   Writer writer_;
   bool is_finished_ = false;
   std::unordered_map<const Channel*, ChannelId> known_;  // the readers' channels, so far
-  std::vector<Channel> written_;                         // [id - 1]
+  std::map<std::string, ChannelId> written_;             // by all but their number
 };
 
 /// What recover() found and did.

@@ -16,7 +16,7 @@ Id enter(std::map<Id, Declared>& index, std::map<std::string, Id>& renamed, unsi
   declared.id = Id{0};
   Bytes record;
   appendDeclaration(record, declared);
-  const std::string content(reinterpret_cast<const char*>(record.data()), record.size());
+  const std::string content(asText(record));
   if (const auto known = renamed.find(content); known != renamed.end()) return known->second;
   while (free_id > 0 && index.contains(Id{static_cast<std::uint16_t>(free_id)})) --free_id;
   if (free_id == 0) throw FormatError("it declares more schemas or channels than there are ids");

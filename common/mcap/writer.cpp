@@ -46,16 +46,15 @@ Writer::~Writer() {
 
 SchemaId Writer::addSchema(std::string_view name, std::string_view encoding, ByteView data) {
   file_.requireHealthy();
-  const auto same = std::find_if(schemas_.begin(), schemas_.end(), [&](const SchemaState& state) {
-    return state.schema.name == name && state.schema.encoding == encoding &&
-           std::ranges::equal(state.schema.data, data);
-  });
-  if (same != schemas_.end()) return same->schema.id;
-  if (schemas_.size() == kMaxIds) throw UsageError("an MCAP file holds at most 65535 schemas");
-  SchemaState state{.schema = {.id = SchemaId{static_cast<std::uint16_t>(schemas_.size() + 1)},
-                               .name = std::string(name),
+  SchemaState state{.schema = {.name = std::string(name),
                                .encoding = std::string(encoding),
                                .data = Bytes(data.begin(), data.end())}};
+  Bytes record;
+  appendSchema(record, state.schema);
+  std::string content(asText(record));
+  if (const auto same = known_.find(content); same != known_.end()) return same->second;
+  if (schemas_.size() == kMaxIds) throw UsageError("an MCAP file holds at most 65535 schemas");
+  state.schema.id = known_[std::move(content)] = SchemaId{static_cast<std::uint16_t>(schemas_.size() + 1)};
   appendSchema(state.record, state.schema);
   makeRoom(state.record.size());
   append(chunk_, state.record);

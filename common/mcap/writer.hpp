@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -123,8 +124,9 @@ class Writer {
   bool is_closed_ = false;
   std::uint32_t data_crc_ = 0;
 
-  std::vector<SchemaState> schemas_;    // [id - 1]
-  std::vector<ChannelState> channels_;  // [id - 1]
+  std::vector<SchemaState> schemas_;       // [id - 1]
+  std::map<std::string, SchemaId> known_;  // of them, by all but their number
+  std::vector<ChannelState> channels_;     // [id - 1]
   std::vector<ChunkIndex> chunk_indexes_;
   std::vector<AttachmentIndex> attachment_indexes_;
   std::vector<MetadataIndex> metadata_indexes_;

@@ -272,6 +272,25 @@ TEST_P(RecoverTest, ACopyThatCannotBeFinishedLeavesWhatItWasToReplace) {
   EXPECT_EQ(loadFile(out).size(), 8U);
 }
 
+TEST(Copier, AnIdWithManyMeaningsIsCopiedWithAllOfThem) {
+  constexpr std::uint64_t kMeanings = 60'000;  // each was compared with all before it
+  const TemporaryFolder folder;
+  FileBuilder file;
+  for (std::uint64_t i = 0; i < kMeanings; ++i) {
+    appendSchema(file.bytes, {.id = SchemaId{1}, .name = std::to_string(i), .encoding = "omgidl", .data = {}});
+    appendChannel(file.bytes, {.id = ChannelId{1}, .schema_id = SchemaId{1}, .topic = std::to_string(i)});
+    appendMessage(file.bytes, {.channel_id = ChannelId{1}, .log_time_ns = i});
+  }
+  file.finish();
+  saveFile(folder.file("in"), file.bytes);
+  RecoverOptions options;
+  options.writer.sync_on_close = false;
+  EXPECT_EQ(recover(folder.file("in"), folder.file("out"), options).messages, kMeanings);
+  const Reader copy(folder.file("out"));
+  EXPECT_EQ(copy.channels().size(), kMeanings);
+  EXPECT_EQ(copy.schemas().size(), kMeanings);
+}
+
 TEST(Copier, EqualChannelsOfSeveralFilesAreOne) {
   const TemporaryFolder folder;
   std::vector<std::filesystem::path> files;
