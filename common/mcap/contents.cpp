@@ -111,10 +111,40 @@ void readContents(ByteView records, Declarations& declarations, Contents& found)
       case Opcode::kSchema: reader.take(decodeSchema(record.body)); break;
       case Opcode::kChannel: reader.take(decodeChannel(record.body)); break;
       case Opcode::kMessage: reader.take(decodeMessage(record.body), at); break;
-      default: break;
+      default: ++(record.opcode > Opcode::kDataEnd ? found.unknown : found.misplaced[record.opcode]);
     }
   });
   reader.finish();
+}
+
+Damage badIn(const Contents& found) {
+  return {.offset = found.extent.offset,
+          .reason = "messages or records in the " + placeOf(found.extent) + " cannot be read: " + found.bad.first,
+          .messages = found.bad.messages};
+}
+
+Damage undeclaredIn(const Contents& found) {
+  constexpr std::size_t kMostNamed = 8;
+  Damage lost{.offset = found.extent.offset};
+  std::string channels;
+  std::size_t named = 0;
+  for (const auto& [id, count] : found.undeclared) {
+    lost.messages += count;
+    if (++named <= kMostNamed) channels += (channels.empty() ? "" : ", ") + numberOf(id);
+  }
+  if (named > kMostNamed) channels += " and more";
+  lost.reason =
+      "messages in the " + placeOf(found.extent) + " belong to channels that are not declared before them: " + channels;
+  return lost;
+}
+
+Damage misplacedIn(const Contents& found) {
+  std::string records;
+  for (const auto& [kind, count] : found.misplaced) {
+    records += (records.empty() ? "" : ", ") + std::to_string(count) + " " + opcodeName(kind);
+  }
+  return {.offset = found.extent.offset,
+          .reason = "the " + placeOf(found.extent) + " holds what has no place in one and is left out: " + records};
 }
 
 }  // namespace baton::mcap

@@ -46,12 +46,20 @@ struct Contents {
   std::map<ChannelId, std::uint64_t> undeclared{};  // those that are lost, by the id in the file
   std::map<ChannelId, std::vector<MessageIndex::Entry>> entries{};  // what message indexes have to say, likewise
   std::vector<std::string> contradictions{};                        // see FileInfo
+  std::map<Opcode, std::uint64_t> misplaced{};  // records in a chunk that have no place in one, by their kind
+  std::uint64_t unknown = 0;                    // records of kinds that MCAP does not know
   BadRecords bad{};
 };
 
 /// Takes the declarations and goes through the messages. One of a channel that is declared nowhere before it, nor in
-/// these records, is lost alone, and so is a record that cannot be read.
+/// these records, is lost alone, and so is a record that cannot be read. A chunk has schemas, channels and messages;
+/// other records in it are left out.
 void readContents(ByteView records, Declarations& declarations, Contents& found);
+
+/// What is lost with them, when there are any.
+[[nodiscard]] Damage badIn(const Contents& found);
+[[nodiscard]] Damage undeclaredIn(const Contents& found);
+[[nodiscard]] Damage misplacedIn(const Contents& found);
 
 /// "chunk at byte 29".
 [[nodiscard]] std::string placeOf(const Extent& extent);

@@ -311,6 +311,7 @@ class Scan {
       if (!found.undeclared.empty() && !loader_.isTolerant()) throw FormatError(undeclaredIn(found).reason);
     });
     for (std::string& text : found.contradictions) contradict(std::move(text));
+    index_.info.unknown_records += found.unknown;
     const bool is_lost = loss.has_value(), is_sound = !is_lost && found.bad.first.empty();
     if (!is_lost && !is_sound) loss = badIn(found);
     if (is_lost) found.entries.clear();
@@ -321,6 +322,7 @@ class Scan {
     }
     if (is_lost) return;
     if (!found.undeclared.empty()) options_.on_damage(undeclaredIn(found));
+    if (!found.misplaced.empty()) leaveOut(misplacedIn(found));
     if (found.counts.empty()) return;
     if (extent.is_chunk && is_sound && found.undeclared.empty()) checkTimes(found.extent);
     Statistics& statistics = index_.statistics;
@@ -335,25 +337,13 @@ class Scan {
     index_.extents.push_back(std::move(found.extent));
   }
 
-  static Damage badIn(const Contents& found) {
-    return {.offset = found.extent.offset,
-            .reason = "messages or records in the " + placeOf(found.extent) + " cannot be read: " + found.bad.first,
-            .messages = found.bad.messages};
-  }
-
-  static Damage undeclaredIn(const Contents& found) {
-    constexpr std::size_t kMostNamed = 8;
-    Damage lost{.offset = found.extent.offset};
-    std::string channels;
-    std::size_t named = 0;
-    for (const auto& [id, count] : found.undeclared) {
-      lost.messages += count;
-      if (++named <= kMostNamed) channels += (channels.empty() ? "" : ", ") + std::to_string(static_cast<unsigned>(id));
+  /// Of a chunk whose messages are sound: no reason to refuse it.
+  void leaveOut(const Damage& misplaced) {
+    if (loader_.isTolerant()) {
+      options_.on_damage(misplaced);
+    } else {
+      contradict(misplaced.reason);
     }
-    if (named > kMostNamed) channels += " and more";
-    lost.reason = "messages in the " + placeOf(found.extent) +
-                  " belong to channels that are not declared before them: " + channels;
-    return lost;
   }
 
   /// What a chunk's head says of its messages.

@@ -106,6 +106,31 @@ TEST_F(SalvageTest, AMessageOfAnUndeclaredChannelCostsItselfAlone) {
   }
 }
 
+TEST_F(SalvageTest, RecordsThatHaveNoPlaceInAChunkAreNamedAndCounted) {
+  FileBuilder file;
+  Bytes records;
+  appendChannel(records, channelOf(1, "a"));
+  FileBuilder::rawRecord(records, 0x06, asBytes("a chunk"));
+  FileBuilder::rawRecord(records, 0x09, asBytes("an attachment"));
+  FileBuilder::rawRecord(records, 0x80, asBytes("private"));
+  FileBuilder::rawRecord(records, 0x09, asBytes("another one"));
+  appendMessage(records, {.channel_id = ChannelId{1}, .log_time_ns = 1});
+  const std::string at = std::to_string(file.bytes.size());
+  file.chunk(records, 1, 1);
+  file.finish();
+  saveFile(path, file.bytes);
+  const Reader reader(path, tolerant());
+  EXPECT_EQ(samplesOf(reader).size(), 1U);
+  EXPECT_EQ(reader.info().unknown_records, 1U);
+  ASSERT_EQ(damage.size(), 1U);
+  EXPECT_EQ(describe(damage[0]), "something is missing at byte " + at + ": the chunk at byte " + at +
+                                     " holds what has no place in one and is left out: 1 Chunk, 2 Attachment");
+  EXPECT_EQ(Reader(path).info().contradictions.size(), 1U) << "also for who reads sound recordings only";
+  const Recovery found = recover(path, folder.file("out.mcap"), {});
+  EXPECT_EQ(found.messages, 1U);
+  EXPECT_EQ(found.lost.size(), 1U);
+}
+
 TEST_F(SalvageTest, ABadRecordCostsItselfAndNotItsChunk) {
   for (const std::uint8_t opcode : {std::uint8_t{0x03}, std::uint8_t{0x04}, std::uint8_t{0x05}}) {
     IndexedFile file;
