@@ -75,6 +75,22 @@ std::optional<ChannelId> Declarations::meaningOf(ChannelId id) {
   return live.means;
 }
 
+std::vector<std::string> Declarations::withoutSchema() {
+  std::vector<std::string> found;
+  for (const std::optional<Live>& live : channels_) {
+    if (!live || live->declared.schema_id == kNoSchema || schemas_.contains(live->declared.schema_id)) continue;
+    const Channel& channel = live->declared;
+    if (fallback_ != nullptr && fallback_->schemas.contains(channel.schema_id)) {
+      index_.schemas.emplace(channel.schema_id, fallback_->schemas.at(channel.schema_id));
+    } else {
+      found.push_back("channel " + std::to_string(static_cast<unsigned>(channel.id)) + " (" + channel.topic +
+                      ") has schema " + std::to_string(static_cast<unsigned>(channel.schema_id)) +
+                      ", which is declared nowhere: its messages stay bytes");
+    }
+  }
+  return found;
+}
+
 void Declarations::forget() {
   fallback_ = nullptr;
   schemas_.clear();

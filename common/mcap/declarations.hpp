@@ -26,6 +26,9 @@ class Declarations {
   std::optional<Channel> take(Channel channel);
   /// The id, in the index, of the channel that messages with this id belong to; nothing when it is not declared.
   [[nodiscard]] std::optional<ChannelId> meaningOf(ChannelId id);
+  /// At the end of a recording: the channels whose schema is declared nowhere, a sentence each. A schema that only the
+  /// fallback declares is taken from there.
+  [[nodiscard]] std::vector<std::string> withoutSchema();
   /// Another recording begins: no id means anything any more.
   void forget();
 

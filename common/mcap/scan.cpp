@@ -70,6 +70,7 @@ class Scan {
     index_.info.beginnings.push_back(at);
     index_.info.trailing_bytes = 0;
     index_.info.has_all_data = false;
+    noteSchemas();
     contradict("another recording begins at byte " + std::to_string(at) +
                ", as when files are joined with `cat`: `bag merge` makes one recording of several");
     declarations_.forget();
@@ -418,7 +419,12 @@ class Scan {
     }
   }
 
+  void noteSchemas() {
+    for (std::string& text : declarations_.withoutSchema()) contradict(std::move(text));
+  }
+
   FileIndex finish() {
+    noteSchemas();
     FileInfo& info = index_.info;
     if (!info.is_complete && (!info.has_all_data || info.trailing_bytes > 0)) {
       info.cuts.push_back(

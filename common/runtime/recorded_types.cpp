@@ -17,8 +17,9 @@ std::string serviceOf(const mcap::Channel& channel) { return mcap::valueOf(chann
 
 const schema::Type* RecordedTypes::typeOf(const mcap::Channel& channel, const mcap::Schema* schema) {
   const auto [known, is_new] = types_.try_emplace(channel.id, nullptr);
-  if (!is_new || schema == nullptr) return known->second;
+  if (!is_new || (schema == nullptr && channel.schema_id == mcap::kNoSchema)) return known->second;
   try {
+    if (schema == nullptr) throw UsageError("its schema is declared nowhere in the recording");
     known->second = read(channel, *schema);
   } catch (const UsageError& error) {
     complain_("topic " + channel.topic + " stays bytes: " + error.what());

@@ -43,6 +43,17 @@ TEST_F(RecordedTypesTest, ASchemaThatCannotBeReadIsReadOnceAndToldOfByTopic) {
   EXPECT_EQ(complaints[1], "topic b" + complaints[0].substr(7));
 }
 
+TEST_F(RecordedTypesTest, ASchemaThatIsDeclaredNowhereIsToldOfAndNoneIsNot) {
+  mcap::Channel channel = channelOf(1, "a");
+  EXPECT_EQ(types.typeOf(channel, nullptr), nullptr);
+  EXPECT_TRUE(complaints.empty());
+  channel = channelOf(2, "b");
+  channel.schema_id = mcap::SchemaId{7};
+  EXPECT_EQ(types.typeOf(channel, nullptr), nullptr);
+  ASSERT_EQ(complaints.size(), 1U);
+  EXPECT_EQ(complaints[0], "topic b stays bytes: its schema is declared nowhere in the recording");
+}
+
 TEST_F(RecordedTypesTest, WhatCannotBeUsedIsNamedWhereItIsUsed) {
   mcap::Schema schema = schemaOf("bitmask B { X };\nstruct S { long a; };\nstruct T { B b; };");
   EXPECT_NE(types.typeOf(channelOf(1, "a"), &schema), nullptr) << complaints.front();

@@ -437,6 +437,41 @@ TEST_F(ContradictionTest, BytesAfterTheEndAreALossThatIsNamed) {
   EXPECT_EQ(found.lost[0].length, 8U);
 }
 
+TEST_F(ContradictionTest, AChannelWhoseSchemaIsDeclaredNowhereIsNamed) {
+  for (const bool is_cut : {true, false}) {
+    IndexedFile file;
+    file.channel(channelOf(1, "a", 7));
+    file.channel(channelOf(2, "b", 0));
+    file.message(1, 1);
+    file.message(2, 2);
+    file.closeChunk();
+    saveFile(path, is_cut ? file.cut() : file.finished());
+    EXPECT_EQ(Reader(path).info().contradictions,
+              (std::vector<std::string>{"channel 1 (a) has schema 7, which is declared nowhere: its messages stay "
+                                        "bytes"}));
+    EXPECT_EQ(recovered().messages, 2U);
+  }
+}
+
+TEST_F(ContradictionTest, ASchemaThatOnlyTheSummaryDeclaresIsUsed) {
+  IndexedFile file;
+  file.channel(channelOf(1, "a"));
+  file.message(1, 1);
+  file.closeChunk();
+  for (const bool is_right : {true, false}) {
+    file.change_summary = [&](IndexedFile& f) {
+      f.schemas = {kSchema};
+      f.statistics.schema_count = 1;
+      if (!is_right) f.statistics.message_count = 7;
+    };
+    saveFile(path, file.finished());
+    const Reader reader(path);
+    EXPECT_EQ(reader.schemas().size(), 1U);
+    EXPECT_EQ(reader.info().has_summary, is_right) << textOf(reader.info());
+    EXPECT_TRUE(reader.info().contradictions.empty()) << textOf(reader.info());
+  }
+}
+
 TEST_F(ContradictionTest, DataAfterTheEndOfTheDataAreNotSilentlyLost) {
   IndexedFile file;
   fill(file);
