@@ -1,18 +1,23 @@
-/// Files of other formats, told by how they begin, for messages about a file that stands in the place of another.
+/// What is in a file that belongs to no recording: bytes before, between and behind recordings, and files that are
+/// none.
 #pragma once
 
-#include <string_view>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "mcap/index.hpp"
 
 namespace baton::mcap {
 
-struct ForeignFormat {
-  std::string_view magic;
-  const char* what;    // behind "it is"
-  const char* remedy;  // how a recording or a text comes out of it; empty: in no way
-  bool is_packed;      // any file may be in it, of which the remedy makes what it was
-};
+/// Where the first recording in the file begins. Throws FormatError, which says what the file is, when there is none.
+/// A Header tells of one whose first bytes are damaged, so that none of its attachments is taken for it.
+[[nodiscard]] std::uint64_t firstRecording(const InputFile& file);
 
-/// What begins like that; nullptr for everything else.
-[[nodiscard]] const ForeignFormat* foreignFormat(std::string_view begin);
+/// Bytes that belong to no recording, in front of the first one or behind the end of one.
+[[nodiscard]] Damage foreignBytes(const InputFile& file, std::uint64_t offset, std::uint64_t length);
+
+/// All of them in a sentence; empty when there are none.
+[[nodiscard]] std::string describeForeign(const std::vector<Damage>& foreign);
 
 }  // namespace baton::mcap

@@ -1,10 +1,8 @@
 #include "mcap/index.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <functional>
 #include <map>
-#include <string_view>
 #include <utility>
 
 #include "base/plural.hpp"
@@ -18,33 +16,6 @@ namespace {
 
 constexpr std::size_t kWindowBytes = 16 << 10;
 constexpr std::uint64_t kTailBytes = kFooterBytes + kMagic.size();
-
-std::string beginOf(const InputFile& file) {
-  std::string begin(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), 64)), '\0');
-  file.read(0, std::as_writable_bytes(std::span(begin)));
-  return begin;
-}
-
-/// Files that are given in the place of a recording: what they are, and what to do.
-std::string whatBeginsWith(const std::string& begin) {
-  if (begin.empty()) return "it is empty, nothing was written into it; give another file";
-  if (const ForeignFormat* format = foreignFormat(begin)) {
-    const std::string remedy = format->remedy;
-    return std::string("it is ") + format->what +
-           (remedy.empty() ? "; give a recording, whose name ends in .mcap" : ": " + remedy);
-  }
-  if (begin.find_first_not_of('\0') == std::string::npos) {
-    return "it begins with " + zerosText(begin.size()) + "; what it was cannot be told, use a copy of it";
-  }
-  const std::size_t text = std::min(begin.find_first_not_of(" \t\r\n\xef\xbb\xbf"), begin.size());
-  if (begin[std::min(text, begin.size() - 1)] == '<') {
-    return "it is XML, as a robot description (URDF) is; a recording ends in .mcap";
-  }
-  const bool is_text =
-      std::ranges::none_of(begin, [](unsigned char c) { return std::iscntrl(c) != 0 && std::isspace(c) == 0; });
-  if (is_text) return "it is text and does not begin with the MCAP magic; give a recording, whose name ends in .mcap";
-  return "it does not begin with the MCAP magic; give a recording, whose name ends in .mcap";
-}
 
 /// What a summary lists of the data section.
 struct Piece {
@@ -368,21 +339,18 @@ std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions&
 }
 
 FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
-  std::array<std::byte, kMagic.size()> magic{};
-  if (file.size() >= kMagic.size()) file.read(0, magic);
-  if (magic != kMagic) {
-    throw NotARecording(file.path().string() + " is not an MCAP recording: " + whatBeginsWith(beginOf(file)));
-  }
+  const std::uint64_t begin = firstRecording(file);
   SummaryProblem problem;
   SummaryClaims claims;
-  std::optional<FileIndex> summary = readSummary(file, options, problem, &claims);
+  std::optional<FileIndex> summary;  // its places count from the beginning of the recording
+  if (begin == 0) summary = readSummary(file, options, problem, &claims);
   if (summary && options.trusts_summary) return *summary;
   if (summary) {
     // Read all of it: only then is it known that no chunk holds other messages than the summary says.
     std::vector<Damage> damage;
     ReaderOptions tolerant = options;
     tolerant.on_damage = [&damage](const Damage& found) { damage.push_back(found); };
-    FileIndex found = scanFile(file, tolerant, &claims.declarations);
+    FileIndex found = scanFile(file, tolerant, begin, &claims.declarations);
     if (options.on_damage) std::ranges::for_each(damage, options.on_damage);
     const auto lost =
         std::ranges::find_if(damage, [](const Damage& one) { return one.length == 0 && one.messages > 0; });
@@ -400,7 +368,7 @@ FileIndex indexFile(const InputFile& file, const ReaderOptions& options) {
       return found;
     }
   }
-  FileIndex index = scanFile(file, options, &claims.declarations);
+  FileIndex index = scanFile(file, options, begin, &claims.declarations);
   index.info.claimed = claims.statistics;
   if (index.info.problem.empty()) {
     index.info.problem = problem.text;

@@ -51,19 +51,20 @@ inline constexpr std::uint64_t kMostInflation = 500;
 struct FileInfo {
   Header header{};
   std::uint64_t file_bytes = 0;
-  bool is_complete = false;  // it ends as a finished recording does
+  bool is_complete = false;  // it is a finished recording, or several, and nothing else
+  bool is_cut = false;       // a recording in it has no end
   /// Up to here everything is a whole record; of joined recordings, up to where the first of them is cut. file_bytes
   /// when is_complete.
   std::uint64_t complete_bytes = 0;
-  bool has_all_data = false;         // its data section ends as it should: if it was cut, then only in its index
-  bool has_summary = false;          // the index is the file's own summary, which its data agree with
-  std::uint64_t trailing_bytes = 0;  // after its end, and of no recording
+  bool has_all_data = false;  // its data section ends as it should: if it was cut, then only in its index
+  bool has_summary = false;   // the index is the file's own summary, which its data agree with
   std::string problem{};      // where it was cut and why, or why its summary was not used; empty when all is well
   bool is_unindexed = false;  // the problem is only that the summary leaves out what the format lets it leave out
   /// Where the file contradicts itself, a sentence each: ids with two meanings, indexes of other messages than there
   /// are, recordings one after another. All of it could be read, as the data have it.
   std::vector<std::string> contradictions{};
-  std::vector<Damage> cuts{};  // where data of a recording in the file end too early, or bytes follow that are of none
+  std::vector<Damage> cuts{};                // where data of a recording in the file end too early
+  std::vector<Damage> foreign{};             // bytes that belong to no recording, before, between and after them
   std::vector<std::uint64_t> beginnings{0};  // of recordings in the file: several, when files were joined
   std::uint64_t unknown_records = 0;         // of kinds that MCAP does not know
   std::optional<Statistics> claimed{};       // by its summary, whether the data agree or not
@@ -117,9 +118,10 @@ struct SummaryClaims {
 /// The two ways, for indexFile: nothing when the file has no summary or one that cannot be used, `problem` says why.
 [[nodiscard]] std::optional<FileIndex> readSummary(const InputFile& file, const ReaderOptions& options,
                                                    SummaryProblem& problem, SummaryClaims* claims = nullptr);
+/// @param begin    of the first recording in the file.
 /// @param summary  declares the channels that the data do not declare before they are used; may be null.
-[[nodiscard]] FileIndex scanFile(const InputFile& file, const ReaderOptions& options,
-                                 const FileIndex* summary = nullptr);
+[[nodiscard]] FileIndex scanFile(const InputFile& file, const ReaderOptions& options, std::uint64_t begin,
+                                 const FileIndex* summary);
 
 /// What a summary says that the data do not, in a sentence; empty when they agree. @param found  by a scan.
 /// @param is_damaged  the scan could not read all of the data, so that it may have found less than there was.

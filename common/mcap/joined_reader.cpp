@@ -75,9 +75,9 @@ void JoinedReader::join(const FileList& files) {
     has_other_problem = has_other_problem || (!info.problem.empty() && !info.is_unindexed);
     for (const std::uint64_t one : info.beginnings) info_.beginnings.push_back(info_.file_bytes + one);
     info_.file_bytes += info.file_bytes;
-    info_.trailing_bytes += info.trailing_bytes;
     info_.complete_bytes += info.complete_bytes;
     info_.is_complete = info_.is_complete && info.is_complete;
+    info_.is_cut = info_.is_cut || info.is_cut;
     info_.has_all_data = info_.has_all_data && info.has_all_data;
     if (i > 0) part.repeated = Repeated(*part.reader, before);
     before.push_back(part.reader.get());

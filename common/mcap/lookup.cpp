@@ -11,6 +11,11 @@ std::string valueOf(const StringMap& map, const std::string& key) {
   return found == map.end() ? "" : found->second;
 }
 
+std::string incompletenessOf(const FileInfo& info) {
+  if (info.is_complete) return "";
+  return info.is_cut ? "it was cut: " + info.problem : info.problem;
+}
+
 std::vector<std::string> topicNames(const Source& reader) {
   std::set<std::string> names;
   for (const auto& [id, channel] : reader.channels()) names.insert(channel.topic);

@@ -11,6 +11,9 @@ namespace baton::mcap {
 /// Empty when the map has no such key.
 [[nodiscard]] std::string valueOf(const StringMap& map, const std::string& key);
 
+/// Why a recording is not complete; empty when it is.
+[[nodiscard]] std::string incompletenessOf(const FileInfo& info);
+
 /// All topics of a recording, sorted.
 [[nodiscard]] std::vector<std::string> topicNames(const Source& reader);
 

@@ -4,6 +4,7 @@
 
 #include "mcap/contents.hpp"
 #include "mcap/extent.hpp"
+#include "mcap/foreign.hpp"
 #include "mcap/index.hpp"
 #include "mcap/search.hpp"
 #include "mcap/shape.hpp"
@@ -25,11 +26,16 @@ constexpr std::size_t kMostJoined = 100;
 class Scan {
  public:
   Scan(const InputFile& file, const ReaderOptions& options, const FileIndex* summary)
-      : file_(file), options_(options), loader_(file, options), search_(file), declarations_(index_, summary) {}
+      : file_(file), options_(options), loader_(file, options), search_(file), declarations_(index_, summary) {
+    index_.info.file_bytes = file.size();
+  }
 
-  FileIndex run() {
-    index_.info.file_bytes = file_.size();
-    RecordWalk walk(file_, kMagic.size(), file_.size());
+  /// @param begin  of the first recording.
+  FileIndex run(std::uint64_t begin) {
+    index_.info.beginnings = {begin};
+    if (begin > 0) index_.info.foreign.push_back(foreignBytes(file_, 0, begin));
+    if (!hasMagic(file_, begin)) contradict("it begins with a Header, and with other bytes than the magic before it");
+    RecordWalk walk(file_, begin + kMagic.size(), file_.size());
     while (true) {
       const std::optional<RecordPlace> place = walk.next();
       if (!place && goOnWithNextRecording(walk, walk.position())) continue;
@@ -39,8 +45,7 @@ class Scan {
       if (place->opcode == Opcode::kFooter) {
         settle();
         closeFile(*place);
-        const std::uint64_t end = index_.info.complete_bytes, longest_cut = is_closed_ ? 0 : kMagic.size();
-        if (goOnWithNextRecording(walk, search_.recordingIn(end, end + longest_cut).value_or(end))) continue;
+        if (goOnBehindEnd(walk)) continue;
         return finish();
       }
       if (is_data_) {
@@ -64,11 +69,10 @@ class Scan {
  private:
   /// Recordings that were joined end to end: the next one begins there. Its ids are its own.
   bool goOnWithNextRecording(RecordWalk& walk, std::uint64_t at) {
-    if (at < kMagic.size() + kRecordHeadBytes || !beginsRecording(file_, at)) return false;
+    if (!beginsRecording(file_, at)) return false;
     settle();
     if (!std::exchange(is_closed_, false)) noteCut(at);
     index_.info.beginnings.push_back(at);
-    index_.info.trailing_bytes = 0;
     index_.info.has_all_data = false;
     noteSchemas();
     contradict("another recording begins at byte " + std::to_string(at) +
@@ -79,6 +83,16 @@ class Scan {
     hidden_.reset();
     walk.moveTo(at + kMagic.size());
     return true;
+  }
+
+  /// Behind a footer. What lies between two recordings, as where the first was padded, is of neither.
+  bool goOnBehindEnd(RecordWalk& walk) {
+    const std::uint64_t end = index_.info.complete_bytes, longest_cut = is_closed_ ? 0 : kMagic.size();
+    if (goOnWithNextRecording(walk, end)) return true;
+    const std::optional<std::uint64_t> next = search_.recordingIn(end, file_.size());
+    const std::uint64_t between = next.value_or(file_.size()) - end;
+    if (between > longest_cut) index_.info.foreign.push_back(foreignBytes(file_, end, between));
+    return next && goOnWithNextRecording(walk, *next);
   }
 
   /// Of a recording that another one follows.
@@ -410,13 +424,7 @@ class Scan {
       return;
     }
     info.complete_bytes += kMagic.size();
-    info.trailing_bytes = file_.size() - info.complete_bytes;
-    info.is_complete = info.trailing_bytes == 0;
     info.problem.clear();
-    if (!info.is_complete) {
-      info.problem = std::to_string(info.trailing_bytes) + " bytes follow the end of the recording at byte " +
-                     std::to_string(info.complete_bytes) + " and belong to none";
-    }
   }
 
   void noteSchemas() {
@@ -426,15 +434,19 @@ class Scan {
   FileIndex finish() {
     noteSchemas();
     FileInfo& info = index_.info;
-    if (!info.is_complete && (!info.has_all_data || info.trailing_bytes > 0)) {
+    info.is_cut = !is_closed_ || !cut_.empty();
+    info.is_complete = !info.is_cut && info.foreign.empty();
+    if (!is_closed_ && !info.has_all_data) {
       info.cuts.push_back(
           {.offset = info.complete_bytes, .length = file_.size() - info.complete_bytes, .reason = info.problem});
     }
     if (!cut_.empty()) {
-      info.is_complete = info.has_all_data = false;
+      info.has_all_data = false;
       info.complete_bytes = cut_at_;
       info.problem = cut_ + (info.problem.empty() ? "" : "; " + info.problem);
     }
+    const std::string foreign = describeForeign(info.foreign);
+    info.problem += (info.problem.empty() || foreign.empty() ? "" : "; ") + foreign;
     Statistics& statistics = index_.statistics;
     statistics.schema_count = static_cast<std::uint16_t>(index_.schemas.size());
     statistics.channel_count = static_cast<std::uint32_t>(index_.channels.size());
@@ -475,8 +487,8 @@ class Scan {
 
 }  // namespace
 
-FileIndex scanFile(const InputFile& file, const ReaderOptions& options, const FileIndex* summary) {
-  return Scan(file, options, summary).run();
+FileIndex scanFile(const InputFile& file, const ReaderOptions& options, std::uint64_t begin, const FileIndex* summary) {
+  return Scan(file, options, summary).run(begin);
 }
 
 }  // namespace baton::mcap

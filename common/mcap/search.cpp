@@ -15,7 +15,10 @@ constexpr std::uint64_t kMostBytes = 4 << 20;
 
 std::optional<std::uint64_t> Search::dataAfter(std::uint64_t torn, bool has_loose) {
   const bool may_hold = mayHoldRecording(file_, torn);
-  bool is_inside = false;  // of a recording in an attachment
+  const bool is_attachment =
+      Opcode{static_cast<std::uint8_t>(numberAt<std::uint8_t>(file_, torn))} == Opcode::kAttachment;
+  std::optional<std::uint64_t> recording;  // the first, in a damaged attachment or behind what is torn
+  bool is_inside = false;                  // of it
   std::uint64_t size = kFirstBytes;
   for (std::uint64_t from = torn + 1; from + kRecordHeadBytes < file_.size();
        from += size, size = std::min(2 * size, kMostBytes)) {
@@ -25,15 +28,18 @@ std::optional<std::uint64_t> Search::dataAfter(std::uint64_t torn, bool has_loos
     file_.read(from, window);
     for (std::size_t i = 0; i < std::min<std::uint64_t>(size, window.size()); ++i) {
       if (std::ranges::equal(ByteView(window).subspan(i).first(std::min(kMagic.size(), window.size() - i)), kMagic)) {
-        if (beginsRecording(file_, from + i + kMagic.size())) return from + i + kMagic.size();
-        if (!may_hold && beginsRecording(file_, from + i)) return from + i;
+        if (beginsRecording(file_, from + i + kMagic.size())) return recording.value_or(from + i + kMagic.size());
+        if (beginsRecording(file_, from + i)) {
+          if (!may_hold) return from + i;
+          if (!recording && !is_attachment) recording = from + i;
+        }
         is_inside = !is_inside;
       }
       const auto opcode = Opcode{std::to_integer<std::uint8_t>(window[i])};
       if (!is_inside && mayGoOnAt(from + i, opcode, has_loose)) return from + i;
     }
   }
-  return std::nullopt;
+  return recording;
 }
 
 /// Lengths of a few bytes may fit by chance: there the next record must begin, too.
@@ -83,10 +89,11 @@ std::optional<std::uint64_t> Search::recordingIn(std::uint64_t from, std::uint64
 /// Those that begin from one byte on and before the other. @param use  returns whether it wants the next one, too.
 template <class Use>
 void Search::forEachMagic(std::uint64_t from, std::uint64_t end, Use use) {
-  for (end = std::min(end, file_.size()); from < end; from += kMostBytes) {
+  end = std::min(end, file_.size());
+  for (std::uint64_t size = kFirstBytes; from < end; from += size, size = std::min(2 * size, kMostBytes)) {
     // One that begins in this piece is looked at whole.
-    const std::uint64_t size = std::min(std::min(end - from, kMostBytes) + kMagic.size() - 1, file_.size() - from);
-    const std::span<std::byte> window = storage_.resize(static_cast<std::size_t>(size));
+    const std::uint64_t bytes = std::min(std::min(end - from, size) + kMagic.size() - 1, file_.size() - from);
+    const std::span<std::byte> window = storage_.resize(static_cast<std::size_t>(bytes));
     file_.read(from, window);
     for (auto magic = window.begin();; magic += kMagic.size()) {
       magic = std::search(magic, window.end(), kMagic.begin(), kMagic.end());

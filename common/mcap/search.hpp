@@ -15,7 +15,8 @@ class Search {
   /// Where the next chunk, attachment or metadata record begins, the data end, or another recording, after what is torn
   /// there. A recording that is attached to this one has chunks that are not of this one: attachments are found whole,
   /// and of one whose own beginning is damaged the magic tells. Two magics are the end of this recording and the
-  /// beginning of another that was joined to it; one is when what is torn holds no recording.
+  /// beginning of another that was joined to it; one is when what is torn holds no recording, or when nothing of this
+  /// one follows.
   /// @param has_loose  the recording has messages outside of chunks: where several records follow one another the first
   /// of them may be one, too.
   [[nodiscard]] std::optional<std::uint64_t> dataAfter(std::uint64_t torn, bool has_loose);

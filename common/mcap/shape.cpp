@@ -83,6 +83,14 @@ bool beginsIndex(const InputFile& file, std::uint64_t offset) {
   }
 }
 
+bool beginsWithHeader(const InputFile& file, std::uint64_t offset) {
+  const std::uint64_t body = offset + kRecordHeadBytes, length = numberAt<std::uint64_t>(file, offset + 1);
+  if (Opcode{static_cast<std::uint8_t>(numberAt<std::uint8_t>(file, offset))} != Opcode::kHeader) return false;
+  return beginsRecord(file, offset, false) &&
+         numberAt<std::uint32_t>(file, body) <= length - leastBytes(Opcode::kHeader) &&
+         beginsRecord(file, body + length, false);
+}
+
 std::uint64_t zerosAt(const InputFile& file, std::uint64_t offset, std::uint64_t end) {
   constexpr std::uint64_t kBlockBytes = 16 << 10;
   Buffer storage;

@@ -26,6 +26,9 @@ template <std::unsigned_integral Number>
 /// Whether that is a record of what follows the data, or the footer.
 [[nodiscard]] bool beginsIndex(const InputFile& file, std::uint64_t offset);
 
+/// Whether a Header lies there, and another record behind it.
+[[nodiscard]] bool beginsWithHeader(const InputFile& file, std::uint64_t offset);
+
 /// Whether the lengths in the record there fit one another. That is more than chance gives, so it also distinguishes
 /// such a record from other bytes. A later version of the format may have added fields to a record: then another one
 /// follows its end. Where one follows its known fields, it is the record's own length that is damaged.

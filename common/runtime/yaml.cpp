@@ -17,7 +17,7 @@
 #include "base/plural.hpp"
 #include "base/text.hpp"
 #include "control/nearest_name.hpp"
-#include "mcap/foreign.hpp"
+#include "mcap/foreign_format.hpp"
 #include "runtime/paths.hpp"
 
 namespace baton {

@@ -29,7 +29,7 @@ Playlist::Playlist(const ReplayOptions& options)
               [this](const std::filesystem::path& file, const mcap::Damage& damage) { noteDamage(file, damage); }),
       range_(options.range, reader_, found_.files.string()) {
   for (const std::string& hole : found_.missing) noteProblem(hole);
-  if (!reader_.info().is_complete) noteProblem("the recording was cut: " + reader_.info().problem);
+  if (!reader_.info().is_complete) noteProblem(mcap::incompletenessOf(reader_.info()));
   for (const std::string& text : reader_.info().contradictions) spdlog::warn("{}", escaped(text));
   checkNames(options);
   filter_.start_time_ns = std::max(range_.startTime(), startTime());

@@ -43,7 +43,8 @@ mcap::WriterOptions optionsFor(const CopyTarget& target, const std::vector<std::
 
 void sayHowItIs(const std::string& file, const mcap::FileInfo& info) {
   if (!info.is_complete) {
-    say(stderr, "%s is not whole, and is used as far as it goes: %s\n", file.c_str(), escaped(info.problem).c_str());
+    const char* use = info.is_cut ? "is not whole, and is used as far as it goes" : "is copied without them";
+    say(stderr, "%s %s: %s\n", file.c_str(), use, escaped(info.problem).c_str());
   }
   for (const std::string& text : info.contradictions) {
     say(stderr, "%s is copied as its data have it: %s\n", file.c_str(), escaped(text).c_str());

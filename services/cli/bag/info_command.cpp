@@ -70,7 +70,8 @@ struct BagSummary {
 
 RecordingVerdict verdictOn(const BagSummary& bag) {
   if (!bag.damage.empty()) return RecordingVerdict::kDamaged;
-  if (!bag.info.is_complete) return RecordingVerdict::kCut;
+  if (bag.info.is_cut) return RecordingVerdict::kCut;
+  if (!bag.info.is_complete) return RecordingVerdict::kIncomplete;  // bytes in it are of no recording
   // What a certificate is of is not this file as it is.
   if (!bag.info.contradictions.empty() && (bag.certificate || !bag.run.empty())) return RecordingVerdict::kIncomplete;
   if (!bag.holes.empty()) return RecordingVerdict::kIncomplete;
@@ -237,7 +238,7 @@ nlohmann::ordered_json toJson(const BagSummary& bag) {
                               {"compression_ratio", bag.compression()},
                               {"attachments", attachments},
                               {"topics", topics}};
-  if (!bag.info.is_complete) json["cut_at_B"] = bag.info.complete_bytes;
+  if (bag.info.is_cut) json["cut_at_B"] = bag.info.complete_bytes;
   if (bag.certificate) {
     json["certificate"] = {{"complete", valueOf(*bag.certificate, "complete") == "true"},
                            {"summary", valueOf(*bag.certificate, "summary")}};

@@ -43,7 +43,8 @@ struct Side {
   explicit Side(const mcap::FileList& file, std::vector<std::string>& warnings)
       : reader(file),
         types([&, name = file.string()](const std::string& problem) { warnings.push_back(name + ": " + problem); }) {
-    if (!reader.info().is_complete) warnings.push_back(file.string() + ": it was cut: " + reader.info().problem);
+    const std::string problem = mcap::incompletenessOf(reader.info());
+    if (!problem.empty()) warnings.push_back(file.string() + ": " + problem);
     for (const std::string& text : reader.info().contradictions) warnings.push_back(file.string() + ": " + text);
   }
   [[nodiscard]] const mcap::Schema* schemaOf(const mcap::Channel& channel) const {

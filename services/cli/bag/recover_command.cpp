@@ -1,5 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -42,6 +43,9 @@ std::string verdictOn(const mcap::Recovery& found) {
     return "all of its bytes could be read, and " + (lost.empty() ? "something is missing" : lost);
   }
   if (found.is_whole) return "it was whole, and is copied";
+  if (!found.info.foreign.empty() && !found.is_changed && !found.info.is_cut) {
+    return "all that belongs to a recording could be read, and is copied";
+  }
   if (found.is_changed)
     return "bytes between its chunks were changed, as the CRC of its data says: something may be lost";
   if (!found.info.contradictions.empty()) return "all of it could be read, and is copied as its data have it";
@@ -59,6 +63,10 @@ void printText(const RecoverRequest& request, const mcap::Recovery& found) {
            damage.messages > 0 ? ", with " + counted(damage.messages, "message") : "", damage.reason);
     }
   }
+  constexpr std::size_t kMostForeign = 20;
+  const std::vector<mcap::Damage>& foreign = found.info.foreign;
+  for (std::size_t i = 0; i < std::min(foreign.size(), kMostForeign); ++i) sayf("left out    {}\n", foreign[i].reason);
+  if (foreign.size() > kMostForeign) sayf("left out    and in {} more places\n", foreign.size() - kMostForeign);
   for (const std::string& note : found.info.contradictions) sayf("note        {}\n", note);
   if (found.info.unknown_records > 0) {
     sayf("left out    {} of kinds that MCAP does not know\n", counted(found.info.unknown_records, "record"));
@@ -76,12 +84,17 @@ nlohmann::ordered_json toJson(const RecoverRequest& request, const mcap::Recover
                     {"chunks", damage.chunks},
                     {"reason", damage.reason}});
   }
+  nlohmann::ordered_json foreign = nlohmann::ordered_json::array();
+  for (const mcap::Damage& one : found.info.foreign) {
+    foreign.push_back({{"from_B", one.offset}, {"length_B", one.length}});
+  }
   return {{"file", request.in},
           {"out", request.out.file},
           {"whole", found.is_whole},
           {"verdict", verdictOn(found)},
           {"lost_B", found.lost_bytes},
           {"lost", lost},
+          {"foreign", foreign},
           {"lost_messages", found.lost_messages},
           {"left_out",
            {{"size_B", found.lost_bytes},
@@ -109,7 +122,8 @@ ExitCode recover(const RecoverRequest& request) {
   } else {
     printText(request, found);
   }
-  return found.lost.empty() && !found.is_changed ? ExitCode::kOk : ExitCode::kFailed;
+  const bool has_all = found.lost.empty() && !found.is_changed && found.info.foreign.empty();
+  return has_all ? ExitCode::kOk : ExitCode::kFailed;
 }
 
 }  // namespace
@@ -120,10 +134,11 @@ void addBagRecover(CLI::App& bag, ExitCode& exit_code) {
   command->footer(
       "Copies all that can be read, and says what cannot: how many bytes, from where on, and why. A copy from which\n"
       "something is missing does not claim to be complete: its certificate is kept under the name original_...\n"
-      "Records of kinds that MCAP does not know are left out.\n"
+      "Records of kinds that MCAP does not know are left out, and so are bytes that belong to no recording, as where\n"
+      "a file was padded: those may have been one, so the exit code is 1.\n"
       "Exit codes: 0 nothing was lost; 1 OUT is there, and something was or may be lost, or writing it failed;\n"
       "2 not a recording;\n"
-      "3 IN cannot be opened, or OUT is there already or cannot be made.");
+      "3 IN cannot be opened, or OUT is there already or cannot be made; 130 interrupted, OUT is not there.");
   command->add_option("in", request->in, "recording (MCAP)")->required();
   addTarget(*command, request->out);
   command->add_flag("--json", request->json, "as a JSON object");

@@ -44,7 +44,7 @@ SelectedMessages::SelectedMessages(const Selection& selection)
   for (const std::string& hole : found_.missing) complain(hole);
   const mcap::FileInfo& info = reader_.info();
   if (!info.is_complete) {
-    complain("it was cut: " + info.problem);
+    complain(mcap::incompletenessOf(info));
   } else if (!info.problem.empty() && !info.is_unindexed) {
     warn(found_.files.string(), info.problem);
   }

@@ -211,7 +211,8 @@ void judge(const std::vector<Part>& parts, bool are_all, const std::optional<std
     const mcap::FileInfo& info = part.reader->info();
     for (const std::string& text : info.contradictions) result.damage.push_back(part.file + ": " + text);
     if (info.problem.empty()) continue;
-    auto& findings = !info.is_complete ? result.cuts : info.is_unindexed ? result.missing : result.damage;
+    const bool is_sound = !info.is_complete || info.is_unindexed;  // there is more in the file, or less in its index
+    auto& findings = info.is_cut ? result.cuts : is_sound ? result.missing : result.damage;
     findings.push_back(part.file + ": " + info.problem);
   }
   if (parts[0].run.empty()) {

@@ -99,7 +99,7 @@ RecordedEfforts readEfforts(const mcap::FileList& file, Trace trace) {
   RecordedEfforts run;
   run.trace = std::move(trace);
   const mcap::JoinedReader reader(file);
-  if (!reader.info().is_complete) run.cut = reader.info().problem;
+  if (reader.info().is_cut) run.cut = reader.info().problem;
   EffortFiller fill(run);
   const auto read = [&]<class M>(const mcap::MessageView& view, const dds::Topic<M>& topic) {
     M message;

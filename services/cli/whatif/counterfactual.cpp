@@ -282,7 +282,7 @@ Counterfactual counterfactual(const mcap::FileList& file, const CounterfactualWi
   made.is_itself = candidate.is_itself;
   made.has_faulty_commands = !wish.as.empty() && made.scenario.wantsFaultOf(wish.as);
   made.is_complete = isCertified(reader);
-  if (!reader.info().is_complete) made.cut = reader.info().problem;
+  if (reader.info().is_cut) made.cut = reader.info().problem;
   made.run = metadataValue(reader, "baton.run", "run");
 
   Walk walk(reader, candidate, made, sink);

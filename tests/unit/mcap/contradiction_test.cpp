@@ -423,7 +423,7 @@ TEST_F(ContradictionTest, DamageAtTheEndOfARecordingDoesNotMixItWithTheNext) {
   EXPECT_TRUE(mentions(found.info, "another recording begins")) << textOf(found.info);
 }
 
-TEST_F(ContradictionTest, BytesAfterTheEndAreALossThatIsNamed) {
+TEST_F(ContradictionTest, BytesAfterTheEndAreNamedAndNoLoss) {
   IndexedFile file;
   fill(file);
   Bytes bytes = file.finished();
@@ -432,9 +432,12 @@ TEST_F(ContradictionTest, BytesAfterTheEndAreALossThatIsNamed) {
   saveFile(path, bytes);
   const Recovery found = recovered();
   EXPECT_EQ(found.messages, 10U);
-  ASSERT_EQ(found.lost.size(), 1U);
-  EXPECT_EQ(found.lost[0].offset, end);
-  EXPECT_EQ(found.lost[0].length, 8U);
+  EXPECT_TRUE(found.lost.empty());
+  ASSERT_EQ(found.info.foreign.size(), 1U);
+  EXPECT_EQ(found.info.foreign[0].offset, end);
+  EXPECT_EQ(found.info.foreign[0].length, 8U);
+  EXPECT_FALSE(found.is_whole);
+  EXPECT_EQ(Reader(out).metadata().at(0).name, "run") << "it is all of the one recording";
 }
 
 TEST_F(ContradictionTest, AChannelWhoseSchemaIsDeclaredNowhereIsNamed) {

@@ -261,22 +261,23 @@ TEST_F(ReaderTest, SeveralCursorsWalkOneFile) {
 
 TEST_F(ReaderTest, RefusesWhatIsNotARecording) {
   EXPECT_THROW(Reader(folder.file("absent")), UnavailableError);
-  for (const auto& [text, hint] : {std::pair{"", "it is empty"},
-                                   {"hello", "the MCAP magic"},
-                                   {"#ROSBAG V2.0\n and more of it", "a ROS 1 bag: `mcap convert`"},
-                                   {"SQLite format 3", "rosbag2 records in (.db3): `ros2 bag convert`"},
-                                   {"<?xml version=\"1.0\"?><robot/>", "a robot description (URDF)"},
-                                   {"\n <robot name=\"a\"/>", "a robot description (URDF)"},
-                                   {"   ", "the MCAP magic"},
-                                   {"name: mine\nrobot: \xc3\xa9\n", "it is text"},
-                                   {"\x01\x02 binary", "it does not begin with the MCAP magic; give"},
-                                   {"\x28\xb5\x2f\xfd and so on", "`zstd -d`"},
-                                   {"\x1f\x8b\x08", "`gunzip`"},
-                                   {"BZh91AY", "`bunzip2`"},
-                                   {"\xfd\x37zXZ", "`unxz`"},
-                                   {"\x04\x22\x4d\x18", "`lz4 -d`"},
-                                   {"PK\x03\x04", "`unzip`"},
-                                   {"\x1f\x8b\x08", "decompress it"}}) {
+  for (const auto& [text, hint] :
+       {std::pair{"", "it is empty"},
+        {"hello", "the MCAP magic"},
+        {"#ROSBAG V2.0\n and more of it", "a ROS 1 bag: `mcap convert`"},
+        {"SQLite format 3", "rosbag2 records in (.db3): `ros2 bag convert`"},
+        {"<?xml version=\"1.0\"?><robot/>", "a robot description (URDF)"},
+        {"\n <robot name=\"a\"/>", "a robot description (URDF)"},
+        {"   ", "the MCAP magic"},
+        {"name: mine\nrobot: \xc3\xa9\n", "it is text"},
+        {"\x01\x02 binary", "it does not begin with the MCAP magic, and nothing in it does; give"},
+        {"\x28\xb5\x2f\xfd and so on", "`zstd -d`"},
+        {"\x1f\x8b\x08", "`gunzip`"},
+        {"BZh91AY", "`bunzip2`"},
+        {"\xfd\x37zXZ", "`unxz`"},
+        {"\x04\x22\x4d\x18", "`lz4 -d`"},
+        {"PK\x03\x04", "`unzip`"},
+        {"\x1f\x8b\x08", "decompress it"}}) {
     saveFile(path, asBytes(text));
     try {
       const Reader reader(path);

@@ -106,7 +106,7 @@ TEST_P(WriterTest, SummaryAgreesWithWhatIsInTheData) {
   SummaryProblem problem;
   const std::optional<FileIndex> summary = readSummary(file, reader_options, problem);
   ASSERT_TRUE(summary) << problem.text;
-  const FileIndex scan = scanFile(file, reader_options);
+  const FileIndex scan = scanFile(file, reader_options, 0, nullptr);
   EXPECT_TRUE(scan.info.is_complete);
   EXPECT_EQ(summary->schemas, scan.schemas);
   EXPECT_EQ(summary->channels, scan.channels);
