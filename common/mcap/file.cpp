@@ -1,12 +1,15 @@
 #include "mcap/file.hpp"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <mutex>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace baton::mcap {
 namespace {
@@ -20,6 +23,26 @@ auto resumed(Call call) {
   while (result < 0 && errno == EINTR) result = call();
   return result;
 }
+
+/// Signals of this thread wait while it lives.
+class SignalPause {
+ public:
+  SignalPause() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before_);
+  }
+  ~SignalPause() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalPause(const SignalPause&) = delete;
+  SignalPause& operator=(const SignalPause&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+/// Changed while signals wait: a handler never finds it half changed, nor without a file that is there already.
+constinit std::vector<const OutputFile*> g_unfinished;
+constinit std::mutex g_unfinished_mutex;
 
 std::filesystem::path presentPath(std::filesystem::path path, OutputFile::IfExists if_exists) {
   std::error_code none;
@@ -70,15 +93,35 @@ OutputFile::OutputFile(std::filesystem::path path, IfExists if_exists)
     : path_(std::move(path)),
       present_path_(presentPath(path_, if_exists)),
       is_own_(if_exists == IfExists::kRefuse || present_path_ != path_),
-      fd_(openOutput(present_path_, is_own_, present_path_ != path_)) {}
+      fd_(create()) {}
 
 OutputFile::~OutputFile() {
   if (isDraft()) discard();
+  setFinished();
+}
+
+int OutputFile::create() const {
+  const SignalPause pause;
+  const int fd = openOutput(present_path_, is_own_, isDraft());
+  const std::lock_guard lock(g_unfinished_mutex);
+  if (is_own_) g_unfinished.push_back(this);
+  return fd;
+}
+
+void OutputFile::setFinished() const noexcept {
+  const SignalPause pause;
+  const std::lock_guard lock(g_unfinished_mutex);
+  std::erase(g_unfinished, this);
+}
+
+void OutputFile::removeUnfinished() noexcept {
+  for (const OutputFile* file : g_unfinished) ::unlink(file->present_path_.c_str());
 }
 
 void OutputFile::discard() noexcept {
   fd_.reset();
   if (is_own_ && !present_path_.empty()) ::unlink(present_path_.c_str());
+  setFinished();
   present_path_.clear();
 }
 
@@ -132,6 +175,7 @@ void OutputFile::close() {
   if (was_draft && ::rename(present_path_.c_str(), path_.c_str()) != 0) {
     fail("it is written and cannot take its place", errno);
   }
+  setFinished();
   present_path_.clear();
   if (!was_draft || !is_name_durable_) return;
   if (const int error = syncFolderOf(path_)) fail("its name is not known to be on the storage device", error);

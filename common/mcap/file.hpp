@@ -50,6 +50,8 @@ class OutputFile {
   void close();
   /// Takes the file away, unless it was there before; nothing can be done with it any more.
   void discard() noexcept;
+  /// Takes away all files of this process that were made and are neither closed nor gone. Safe in a signal handler.
+  static void removeUnfinished() noexcept;
   /// Throws the error of an earlier failure again, or WriteError when the file is closed.
   void requireHealthy() const;
 
@@ -62,6 +64,8 @@ class OutputFile {
  private:
   [[nodiscard]] bool isDraft() const { return !present_path_.empty() && present_path_ != path_; }
   [[noreturn]] void fail(const std::string& what, int error);
+  [[nodiscard]] int create() const;
+  void setFinished() const noexcept;
 
   std::filesystem::path path_;
   std::filesystem::path present_path_;  // empty once it is closed or gone

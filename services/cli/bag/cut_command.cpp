@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bag/copy_target.hpp"
+#include "bag/interruption.hpp"
 #include "bag/selection.hpp"
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
@@ -108,6 +109,7 @@ Copied copyMessages(const CutRequest& request, const mcap::JoinedReader& reader,
 }
 
 ExitCode cut(CutRequest& request) {
+  removeUnfinishedOnSignals();
   request.out.file = takeLast(request.what.recording.given);
   if (request.what.range.isAll() && request.what.topics.empty()) {
     throw UsageError("expected what to keep: a range (--from, --to-step, ...) or --topics");

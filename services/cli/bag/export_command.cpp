@@ -10,6 +10,7 @@
 
 #include "bag/csv_columns.hpp"
 #include "bag/export_files.hpp"
+#include "bag/interruption.hpp"
 #include "bag/message_text.hpp"
 #include "bag/selection.hpp"
 #include "bag/subcommands.hpp"
@@ -54,6 +55,7 @@ class Export {
   explicit Export(const ExportRequest& request) : request_(request), messages_(request.selection) {}
 
   ExitCode run() {
+    removeUnfinishedOnSignals();
     makeFolder(request_.folder);
     messages_.forEach("looking ", [&](const mcap::MessageView& message) { return look(message); });
     createFiles();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bag/copy_target.hpp"
+#include "bag/interruption.hpp"
 #include "bag/subcommands.hpp"
 #include "base/error.hpp"
 #include "base/plural.hpp"
@@ -172,6 +173,7 @@ void copyMessages(std::vector<Source>& sources, mcap::Copier& copy) {
 }
 
 ExitCode merge(MergeRequest& request) {
+  removeUnfinishedOnSignals();
   request.out.file = takeLast(request.given);
   const std::vector<std::string> files = filesOf({.given = request.given});
   const std::vector<std::string> missing = missingParts(files);

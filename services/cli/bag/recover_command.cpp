@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bag/copy_target.hpp"
+#include "bag/interruption.hpp"
 #include "bag/subcommands.hpp"
 #include "base/plural.hpp"
 #include "runtime/json.hpp"
@@ -108,6 +109,7 @@ nlohmann::ordered_json toJson(const RecoverRequest& request, const mcap::Recover
 }
 
 ExitCode recover(const RecoverRequest& request) {
+  removeUnfinishedOnSignals();
   ProgressLine line;
   mcap::RecoverOptions options;
   options.writer = optionsFor(request.out, {request.in});

@@ -84,6 +84,24 @@ TEST_F(FileTest, WhatIsReplacedIsThereUntilItsSuccessorIsWhole) {
   EXPECT_FALSE(std::filesystem::exists(part));
 }
 
+TEST_F(FileTest, WhatIsUnfinishedGoesWhenTheProgramIsToEnd) {
+  const std::filesystem::path kept = folder.file("kept"), replaced = folder.file("replaced");
+  saveFile(kept, payload(10, 1));
+  saveFile(replaced, payload(20, 1));
+  OutputFile fresh(path, OutputFile::IfExists::kRefuse), draft(replaced, OutputFile::IfExists::kReplace);
+  fresh.write(payload(30, 1));
+  draft.write(payload(30, 1));
+  OutputFile finished(folder.file("finished"), OutputFile::IfExists::kRefuse);
+  finished.close();
+  EXPECT_THROW(OutputFile(kept, OutputFile::IfExists::kRefuse), UnavailableError);
+  OutputFile::removeUnfinished();
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_FALSE(std::filesystem::exists(replaced.string() + ".part"));
+  EXPECT_EQ(std::filesystem::file_size(replaced), 20U);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("finished")));
+  EXPECT_TRUE(std::filesystem::exists(kept));
+}
+
 TEST_F(FileTest, WhatIsDiscardedIsGone) {
   OutputFile file(path, OutputFile::IfExists::kRefuse);
   file.write(payload(10, 1));
