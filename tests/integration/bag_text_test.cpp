@@ -185,6 +185,13 @@ TEST(BagCommands, ReadRecordingsThatWereJoinedInOneFile) {
   EXPECT_EQ(recovered.out.find("nothing was lost"), std::string::npos) << recovered.out;
   EXPECT_NE(bench.baton({"bag", "verify", file}).exit_code, 0);
 
+  std::ofstream(file, std::ios::binary) << one << std::string(4096, '\0') << one;
+  const Finished padded = bench.baton({"bag", "info", file});
+  EXPECT_EQ(padded.exit_code, 1);
+  EXPECT_NE(padded.out.find("messages    20 in"), std::string::npos) << padded.out;
+  EXPECT_NE(padded.out.find("4096 zero bytes follow the end of the recording"), std::string::npos) << padded.out;
+  EXPECT_EQ(linesOf(bench.baton({"bag", "cat", file}).out).size(), 20U);
+
   std::ofstream(file, std::ios::binary) << one << "something else";
   EXPECT_EQ(bench.baton({"bag", "info", file}).exit_code, 1);
   const Finished lossy = bench.baton({"bag", "recover", file, (bench.folder() / "lossy.mcap").string()});
