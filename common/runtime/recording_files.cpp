@@ -282,4 +282,10 @@ mcap::FileList findRecording(const RecordingWish& wish, ExitCode& exit_code) {
   return std::move(found.files);
 }
 
+void warnIfIncomplete(const std::string& file, const mcap::FileInfo& info, ExitCode& exit_code) {
+  if (info.is_complete) return;
+  sayWarning(file + ": " + mcap::incompletenessOf(info));
+  exit_code = ExitCode::kFailed;
+}
+
 }  // namespace baton

@@ -49,4 +49,7 @@ struct FoundRecording {
 /// The same; prints holes on standard error, and then sets `exit_code` to kFailed.
 [[nodiscard]] mcap::FileList findRecording(const RecordingWish& wish, ExitCode& exit_code);
 
+/// Says on standard error why a recording is not complete, when it is not, and then sets `exit_code` to kFailed.
+void warnIfIncomplete(const std::string& file, const mcap::FileInfo& info, ExitCode& exit_code);
+
 }  // namespace baton

@@ -106,6 +106,9 @@ TEST_F(BagFiles, ACutAndADamagedRecordingAreFoundOutAndRecovered) {
   fs::copy_file(file, path("cut.mcap"));
   fs::resize_file(path("cut.mcap"), size * 2 / 3);
   EXPECT_EQ(verify(path("cut.mcap")), 1);
+  EXPECT_EQ(bench.baton({"bag", "info", path("cut.mcap")}).exit_code, 1);
+  EXPECT_EQ(bench.baton({"bag", "hash", path("cut.mcap")}).exit_code, 1);
+  EXPECT_EQ(bench.baton({"metrics", path("cut.mcap")}).exit_code, 1);
   const Finished recovered = bench.baton({"bag", "recover", path("cut.mcap"), path("whole.mcap"), "--json"});
   EXPECT_EQ(recovered.exit_code, 1) << "something was lost";
   const nlohmann::json found = nlohmann::json::parse(recovered.out);

@@ -26,8 +26,9 @@ struct HashRequest {
 };
 
 /// Of a recording that was made without one of the loop's topics nothing can be said.
-HashedRun hashWholeRun(const mcap::FileList& file) {
+HashedRun hashWholeRun(const mcap::FileList& file, ExitCode& exit_code) {
   const mcap::JoinedReader reader(file);
+  warnIfIncomplete(file.string(), reader.info(), exit_code);
   for (const char* topic : {dds::topics::kJointCommand.name, dds::topics::kContact.name}) {
     expectNotLeftOut(reader, topic, file);
   }
@@ -46,7 +47,7 @@ std::string brokenText(const HashedRun& run, std::uint64_t broken) {
 ExitCode hash(const HashRequest& request) {
   ExitCode holes = ExitCode::kOk;
   const mcap::FileList file = findRecording({.given = {request.recording}, .with_parts = request.with_parts}, holes);
-  const HashedRun run = hashWholeRun(file);
+  const HashedRun run = hashWholeRun(file, holes);
   const std::optional<std::uint64_t> broken = run.firstBroken();
   nlohmann::ordered_json json{{"file", file.string()},
                               {"hash", std::to_string(run.hash())},
@@ -59,7 +60,7 @@ ExitCode hash(const HashRequest& request) {
   if (!request.other.empty()) {
     const mcap::FileList other_file =
         findRecording({.given = {request.other}, .with_parts = request.with_parts}, holes);
-    const HashedRun other = hashWholeRun(other_file);
+    const HashedRun other = hashWholeRun(other_file, holes);
     const Comparison comparison = compare(run, other);
     const std::optional<Parting>& parting = comparison.parting;
     const bool is_same = !parting && comparison.steps > 0 && !other.firstBroken();
@@ -96,7 +97,8 @@ void addBagHash(CLI::App& bag, ExitCode& exit_code) {
   command->footer(
       "It is made of the topics plant_state, contact and joint_command.\n"
       "Exit codes: 0 the payloads give the hash that the run had, and the other file has the same; 1 otherwise,\n"
-      "with the first step; 2 not the recording of a run, or one without a topic of these; 3 cannot be opened.");
+      "with the first step, or a recording is cut; 2 not the recording of a run, or one without a topic of these; 3 "
+      "cannot be opened.");
   command->add_option("file", request->recording, kOneRecordingText)->required();
   command->add_option("other", request->other, "another one, to compare step by step");
   addParts(*command, request->with_parts);

@@ -127,6 +127,7 @@ Trace readTrace(const mcap::FileList& file) {
   Trace trace;
   trace.scenario = recordedScenario(reader, file);
   trace.is_complete = isCertified(reader);
+  trace.info = reader.info();
   const std::uint64_t begin_ns = lastTakeBegin(reader);
   const Stretch stretch = statesIn(reader, begin_ns, trace.scenario.step_ns, file);
   trace.first_step = stretch.first;

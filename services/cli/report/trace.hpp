@@ -40,6 +40,7 @@ struct Trace {
   std::vector<msg::SwapOutcome> swaps;  // those that took place, in order
   std::uint64_t missed_steps = 0;
   bool is_complete = false;  // by the recording's own certificate
+  mcap::FileInfo info{};     // of the file
 
   [[nodiscard]] Eigen::Index steps() const { return q.cols(); }
   /// Of a column [s], to the bit what services make of its step's time_ns.
