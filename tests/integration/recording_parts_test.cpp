@@ -129,6 +129,23 @@ TEST_F(RecordingParts, AMissingOneIsNamedAndAnotherRunIsRefused) {
   EXPECT_EQ(bench.baton({"bag", "verify", folder.string()}).exit_code, 1);
 }
 
+TEST_F(RecordingParts, AreRecoveredEachUnderItsName) {
+  {
+    std::fstream part(parts[1], std::ios::in | std::ios::out | std::ios::binary);
+    part.seekp(100'000);  // within a chunk
+    part << std::string(1000, '?');
+  }
+  const Finished recovered = bench.baton({"bag", "recover", folder.string(), path("sound"), "--json"});
+  EXPECT_EQ(recovered.exit_code, 1) << recovered.out << recovered.err;
+  const nlohmann::json each = nlohmann::json::parse(recovered.out);
+  ASSERT_EQ(each.size(), parts.size());
+  for (const nlohmann::json& one : each) EXPECT_EQ(one.at("whole"), one.at("file") != parts[1]) << one;
+  EXPECT_EQ(bench.batonJson({"bag", "info", path("sound"), "--json"}).at("verdict"), "complete");
+  EXPECT_EQ(bench.baton({"bag", "recover", "--parts", parts[2], path("sound")}).exit_code, 3) << "they are there";
+  EXPECT_EQ(bench.baton({"bag", "recover", "--parts", parts[2], path("sound"), "--overwrite"}).exit_code, 1);
+  EXPECT_EQ(bench.baton({"bag", "recover", folder.string(), parts[0], "--overwrite"}).exit_code, 2) << "no folder";
+}
+
 TEST_F(RecordingParts, APieceBySteps) {
   const std::string piece = path("piece.mcap");
   const nlohmann::json cut = bench.batonJson(Words{"bag", "cut"} + reversed() +

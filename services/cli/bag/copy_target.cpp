@@ -10,11 +10,6 @@
 
 namespace baton {
 
-void addTarget(CLI::App& command, CopyTarget& target) {
-  command.add_option("out", target.file, "recording to make")->required();
-  addOverwrite(command, target);
-}
-
 void addOverwrite(CLI::App& command, CopyTarget& target) {
   command.add_flag("--overwrite", target.overwrite, "replace OUT if it is there");
 }

@@ -15,9 +15,7 @@ struct CopyTarget {
   bool overwrite = false;
 };
 
-/// OUT and --overwrite.
-void addTarget(CLI::App& command, CopyTarget& target);
-/// Without its name.
+/// --overwrite.
 void addOverwrite(CLI::App& command, CopyTarget& target);
 
 /// Of recordings and then the file to make, the file; `given` keeps the recordings. Throws UsageError when there is

@@ -1,25 +1,39 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "bag/copy_target.hpp"
 #include "bag/interruption.hpp"
 #include "bag/subcommands.hpp"
+#include "base/error.hpp"
 #include "base/plural.hpp"
 #include "runtime/json.hpp"
+#include "runtime/paths.hpp"
 #include "runtime/progress_line.hpp"
+#include "runtime/recording_files.hpp"
 #include "runtime/say.hpp"
 
 namespace baton {
 namespace {
+namespace fs = std::filesystem;
 
 struct RecoverRequest {
-  std::string in;
+  std::vector<std::string> given;  // recordings, and last what to make
+  bool with_parts = false;
   CopyTarget out;
   bool json = false;
+};
+
+/// One of them.
+struct Job {
+  std::string in;
+  CopyTarget out;
 };
 
 /// "3 chunks and 120 messages are lost"; empty for none.
@@ -54,8 +68,8 @@ std::string verdictOn(const mcap::Recovery& found) {
   return "nothing was lost, it has its index again: " + found.info.problem;
 }
 
-void printText(const RecoverRequest& request, const mcap::Recovery& found) {
-  sayf("{}: {}\n", request.in, verdictOn(found));
+void printText(const Job& job, const mcap::Recovery& found) {
+  sayf("{}: {}\n", job.in, verdictOn(found));
   for (const mcap::Damage& damage : found.lost) {
     if (damage.length == 0) {
       sayf("lost        {}\n", mcap::describe(damage));
@@ -72,11 +86,11 @@ void printText(const RecoverRequest& request, const mcap::Recovery& found) {
   if (found.info.unknown_records > 0) {
     sayf("left out    {} of kinds that MCAP does not know\n", counted(found.info.unknown_records, "record"));
   }
-  sayf("recovered   {}: {}, {}, {}\n", request.out.file, counted(found.messages, "message"),
+  sayf("recovered   {}: {}, {}, {}\n", job.out.file, counted(found.messages, "message"),
        counted(found.attachments, "attachment"), counted(found.metadata, "metadata record"));
 }
 
-nlohmann::ordered_json toJson(const RecoverRequest& request, const mcap::Recovery& found) {
+nlohmann::ordered_json toJson(const Job& job, const mcap::Recovery& found) {
   nlohmann::ordered_json lost = nlohmann::ordered_json::array();
   for (const mcap::Damage& damage : found.lost) {
     lost.push_back({{"from_B", damage.offset},
@@ -89,8 +103,8 @@ nlohmann::ordered_json toJson(const RecoverRequest& request, const mcap::Recover
   for (const mcap::Damage& one : found.info.foreign) {
     foreign.push_back({{"from_B", one.offset}, {"length_B", one.length}});
   }
-  return {{"file", request.in},
-          {"out", request.out.file},
+  return {{"file", job.in},
+          {"out", job.out.file},
           {"whole", found.is_whole},
           {"verdict", verdictOn(found)},
           {"lost_B", found.lost_bytes},
@@ -108,23 +122,55 @@ nlohmann::ordered_json toJson(const RecoverRequest& request, const mcap::Recover
           {"metadata", found.metadata}};
 }
 
-ExitCode recover(const RecoverRequest& request) {
-  removeUnfinishedOnSignals();
+mcap::Recovery recoverOne(const Job& job) {
   ProgressLine line;
   mcap::RecoverOptions options;
-  options.writer = optionsFor(request.out, {request.in});
+  options.writer = optionsFor(job.out, {job.in});
   options.lossy_name = withoutClaim;
   options.progress = [&line](double part) {
     line.show(fmt::format("recovering {} {:3.0f} %", progressBar(part), 100.0 * part));
   };
-  const mcap::Recovery found = mcap::recover(request.in, request.out.file, options);
-  line.clear();
-  if (request.json) {
-    sayText(toText(toJson(request, found)) + '\n');
-  } else {
-    printText(request, found);
+  return mcap::recover(job.in, job.out.file, options);
+}
+
+/// Of one file its copy; of several, each under its own name in a folder. What stands in the way of one is said before
+/// any is made.
+std::vector<Job> jobsOf(const RecoverRequest& request) {
+  const std::string& in = request.given.front();
+  if (request.given.size() == 1 && !request.with_parts && !fs::is_directory(in)) return {{in, request.out}};
+  const fs::path folder = request.out.file;
+  if (fs::exists(folder) && !fs::is_directory(folder)) {
+    throw UsageError(folder.string() + ": expected a folder, for the copies of several files, found a file");
   }
-  const bool has_all = found.lost.empty() && !found.is_changed && found.info.foreign.empty();
+  std::vector<Job> jobs;
+  std::set<std::string> names;
+  for (const std::string& file : filesOf({.given = request.given, .with_parts = request.with_parts})) {
+    jobs.push_back({file, {(folder / fs::path(file).filename()).string(), request.out.overwrite}});
+    (void)optionsFor(jobs.back().out, {file});
+    if (names.insert(jobs.back().out.file).second) continue;
+    throw UsageError("expected files of different names, for copies in one folder, found two of " +
+                     jobs.back().out.file);
+  }
+  makeFolder(folder);
+  return jobs;
+}
+
+ExitCode recover(RecoverRequest& request) {
+  removeUnfinishedOnSignals();
+  request.out.file = takeLast(request.given);
+  const std::vector<Job> jobs = jobsOf(request);
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  bool has_all = true;
+  for (const Job& job : jobs) {
+    const mcap::Recovery found = recoverOne(job);
+    has_all = has_all && found.lost.empty() && !found.is_changed && found.info.foreign.empty();
+    if (request.json) {
+      all.push_back(toJson(job, found));
+    } else {
+      printText(job, found);
+    }
+  }
+  if (request.json) sayText(toText(jobs.size() == 1 ? all[0] : all) + '\n');
   return has_all ? ExitCode::kOk : ExitCode::kFailed;
 }
 
@@ -141,8 +187,12 @@ void addBagRecover(CLI::App& bag, ExitCode& exit_code) {
       "Exit codes: 0 nothing was lost; 1 OUT is there, and something was or may be lost, or writing it failed;\n"
       "2 not a recording;\n"
       "3 IN cannot be opened, or OUT is there already or cannot be made; 130 interrupted, OUT is not there.");
-  command->add_option("in", request->in, "recording (MCAP)")->required();
-  addTarget(*command, request->out);
+  command
+      ->add_option("files", request->given,
+                   "recording (MCAP) and the file to make; of several, or a folder, the folder to make them in")
+      ->required();
+  addParts(*command, request->with_parts);
+  addOverwrite(*command, request->out);
   command->add_flag("--json", request->json, "as a JSON object");
   command->callback([request, &exit_code] { exit_code = recover(*request); });
 }
