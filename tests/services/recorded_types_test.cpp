@@ -55,14 +55,14 @@ TEST_F(RecordedTypesTest, ASchemaThatIsDeclaredNowhereIsToldOfAndNoneIsNot) {
 }
 
 TEST_F(RecordedTypesTest, WhatCannotBeUsedIsNamedWhereItIsUsed) {
-  mcap::Schema schema = schemaOf("bitmask B { X };\nstruct S { long a; };\nstruct T { B b; };");
+  mcap::Schema schema = schemaOf("bitset B { bitfield<3> x; };\nstruct S { long a; };\nstruct T { B b; };");
   EXPECT_NE(types.typeOf(channelOf(1, "a"), &schema), nullptr) << complaints.front();
   schema.name = "T";
   EXPECT_EQ(types.typeOf(channelOf(2, "b"), &schema), nullptr);
   ASSERT_EQ(complaints.size(), 1U);
   EXPECT_EQ(complaints[0],
             "topic b stays bytes: the text of schema T, definition of B, line 1: expected module, struct, union, enum, "
-            "typedef or const, found 'bitmask'");
+            "bitmask, typedef or const, found 'bitset'");
   schema.name = "Nowhere";
   EXPECT_EQ(types.typeOf(channelOf(3, "c"), &schema), nullptr);
   EXPECT_NE(complaints.back().find("found it nowhere; what cannot be read there: line 1"), std::string::npos)
