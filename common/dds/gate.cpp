@@ -43,7 +43,7 @@ std::optional<std::int64_t> asksIn(std::span<const std::byte> message) {
     const bool is_little = (byteAt(rest, 1) & 1) != 0;
     const std::size_t said = numberAt(rest, 2, 2, is_little);
     rest = rest.subspan(kSubmessageHeader);
-    // Of no length is the last one, which goes on to the end.
+    // A submessage of length 0 is the last one and reaches to the end.
     const auto body =
         rest.first(said == 0 && kind != kPad && kind != kInfoTimestamp ? rest.size() : std::min(said, rest.size()));
     switch (kind) {

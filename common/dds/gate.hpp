@@ -15,7 +15,7 @@
 
 namespace baton::dds {
 
-/// What a participant hears of those that have not its key, beside discovery.
+/// What a participant with a key hears of those without it, apart from discovery.
 enum class Strangers {
   kAsk,         // their acknowledgements and requests for repairs, so many a second of all together
   kAskFreely,   // all of these: what is written is for them

@@ -65,7 +65,7 @@ std::uint64_t firstRecording(const InputFile& file) {
   const std::string begin = beginOf(file), refusal = file.path().string() + " is not an MCAP recording: ";
   if (const std::optional<char> version = otherVersion(begin)) {
     throw NotARecording(refusal + "it is an MCAP file of version " + *version +
-                      ", expected version 0: write it, or convert it, in that one");
+                        ", expected version 0: write it, or convert it, in that one");
   }
   if (beginsWithHeader(file, kMagic.size())) return 0;
   if (const std::optional<std::uint64_t> found = Search(file).recordingIn(0, file.size())) return *found;
