@@ -1,6 +1,7 @@
 #include "dds/gate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <optional>
 
@@ -9,7 +10,8 @@ namespace {
 
 // RTPS 2.5, 8.3 and 9.4: a header of 20 bytes, then submessages.
 constexpr std::size_t kPrefixAt = 8, kHeader = 20, kSubmessageHeader = 4;
-constexpr std::uint8_t kPad = 0x01, kAckNack = 0x06, kInfoTimestamp = 0x09, kInfoDestination = 0x0e, kNackFrag = 0x12;
+constexpr std::uint8_t kPad = 0x01, kAckNack = 0x06, kInfoTimestamp = 0x09, kInfoDestination = 0x0e, kNackFrag = 0x12,
+                       kOfVendors = 0x80;
 
 std::uint8_t byteAt(std::span<const std::byte> bytes, std::size_t at) {
   return std::to_integer<std::uint8_t>(bytes[at]);
@@ -23,15 +25,15 @@ std::uint32_t numberAt(std::span<const std::byte> bytes, std::size_t at, std::si
   return number;
 }
 
-/// Of an acknowledgement: reader, writer, and from where on which samples are missing, by their bits.
-std::int64_t asksOf(std::span<const std::byte> body, bool is_little) {
-  constexpr std::size_t kBitsAt = 16, kMapAt = 20, kMostBits = 256;
-  if (body.size() < kMapAt) return 1;
-  const std::size_t bits = std::min<std::size_t>(kMostBits, numberAt(body, kBitsAt, 4, is_little));
+/// Of an acknowledgement: reader, writer, and from where on which samples are missing, by their bits. Nothing of one
+/// that is not whole.
+std::optional<std::int64_t> asksOf(std::span<const std::byte> body, bool is_little) {
+  constexpr std::size_t kBitsAt = 16, kMapAt = 20, kMostBits = 256, kCount = 4;
+  if (body.size() < kMapAt) return std::nullopt;
+  const std::size_t bits = numberAt(body, kBitsAt, 4, is_little), map = (bits + 31) / 32 * 4;
+  if (bits > kMostBits || body.size() < kMapAt + map + kCount) return std::nullopt;
   std::int64_t asks = 1;
-  for (std::size_t at = kMapAt; at < std::min(body.size(), kMapAt + (bits + 31) / 32 * 4); ++at) {
-    asks += std::popcount(byteAt(body, at));
-  }
+  for (std::size_t at = kMapAt; at < kMapAt + map; ++at) asks += std::popcount(byteAt(body, at));
   return asks;
 }
 
@@ -43,14 +45,25 @@ std::optional<std::int64_t> asksIn(std::span<const std::byte> message) {
     const bool is_little = (byteAt(rest, 1) & 1) != 0;
     const std::size_t said = numberAt(rest, 2, 2, is_little);
     rest = rest.subspan(kSubmessageHeader);
-    // A submessage of length 0 is the last one and reaches to the end.
-    const auto body =
-        rest.first(said == 0 && kind != kPad && kind != kInfoTimestamp ? rest.size() : std::min(said, rest.size()));
+    // A submessage of length 0 is the last one and reaches to the end; any other ends on a multiple of four, or DDS
+    // and we would not see the same ones behind it.
+    const bool is_last = said == 0 && kind != kPad && kind != kInfoTimestamp;
+    if (said > rest.size() || said % 4 != 0) return std::nullopt;
+    const auto body = rest.first(is_last ? rest.size() : said);
+    if (kind >= kOfVendors) {  // nothing that Fast DDS looks at: it adds statistics of its own to what it sends
+      rest = rest.subspan(body.size());
+      continue;
+    }
     switch (kind) {
       case kPad:
       case kInfoTimestamp:
       case kInfoDestination: break;
-      case kAckNack: asks += asksOf(body, is_little); break;
+      case kAckNack: {
+        const std::optional<std::int64_t> more = asksOf(body, is_little);
+        if (!more) return std::nullopt;
+        asks += *more;
+        break;
+      }
       case kNackFrag: asks += 256; break;  // so many fragments at most
       default: return std::nullopt;
     }
@@ -67,8 +80,10 @@ Gate::Gate(const RunKey& key, Strangers strangers, Tell tell)
 bool Gate::admits(std::span<const std::byte> message, std::int64_t now_ns) {
   if (strangers_ == Strangers::kSpeakFreely) return true;
   GuidPrefix sender{};
-  if (message.size() < kHeader) {
-    turnAway(sender, Trespass::kSpeaks);
+  constexpr std::array kMagic{std::byte{'R'}, std::byte{'T'}, std::byte{'P'}, std::byte{'S'}};
+  if (message.size() < kHeader || !std::ranges::equal(message.first(kMagic.size()), kMagic)) {
+    const std::lock_guard lock(mutex_);
+    ++turned_away_;  // nobody's
     return false;
   }
   std::transform(message.begin() + kPrefixAt, message.begin() + kHeader, sender.begin(),

@@ -169,14 +169,13 @@ DomainParticipantQos participantQos(const ParticipantOptions& options, const std
 
   qos.transport().use_builtin_transports = false;
   const std::uint64_t one_in = loseOneIn();
-  const auto use = [&](std::shared_ptr<transport::TransportDescriptorInterface> one) {
-    qos.transport().user_transports.push_back(gate ? gated(gate, std::move(one)) : std::move(one));
-  };
   const auto udp = udpOn(options.addresses);
-  use(one_in > 0 ? losing(one_in, udp) : udp);
+  const auto way = one_in > 0 ? losing(one_in, udp) : udp;
+  qos.transport().user_transports.push_back(gate ? gated(gate, way) : way);
   discoverIn(options, options.addresses.empty() ? addressesOfAll() : options.addresses, qos);
   if (options.transport == Transport::kSharedMemory) {
-    use(std::make_shared<transport::SharedMemTransportDescriptor>());
+    // Without a gate: Fast DDS finds this transport by the type of its descriptor, and would not use it.
+    qos.transport().user_transports.push_back(std::make_shared<transport::SharedMemTransportDescriptor>());
   }
 
   auto& discovery = qos.wire_protocol().builtin.discovery_config;

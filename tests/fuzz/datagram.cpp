@@ -15,12 +15,12 @@ bool onlyAsks(std::span<const std::uint8_t> message) {
   std::size_t at = 20;
   while (message.size() >= at + 4) {
     const std::uint8_t kind = message[at];
-    if (kind != 0x01 && kind != 0x06 && kind != 0x09 && kind != 0x0e && kind != 0x12) return false;
+    if (kind < 0x80 && kind != 0x01 && kind != 0x06 && kind != 0x09 && kind != 0x0e && kind != 0x12) return false;
     const bool is_little = (message[at + 1] & 1) != 0;
     const std::size_t length =
         is_little ? message[at + 2] + 256U * message[at + 3] : message[at + 3] + 256U * message[at + 2];
     if (length == 0 && kind != 0x01 && kind != 0x09) return true;  // up to the end
-    at += 4 + length;
+    at += 4 + ((length + 3) & ~std::size_t{3});                    // as Fast DDS does
   }
   return true;
 }
