@@ -20,7 +20,6 @@ const char* toString(msg::ControllerState state) {
     case msg::CONTROLLER_STANDBY: return "standby";
     case msg::CONTROLLER_ACTIVE: return "active";
     case msg::CONTROLLER_FAILED: return "failed";
-    case msg::CONTROLLER_WAITING: return "waiting";
   }
   return "?";
 }

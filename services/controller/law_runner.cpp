@@ -53,8 +53,6 @@ LawRunner::LawRunner(Service& service)
   service.onRewind([this](std::uint64_t step) { return isQuiet(step); }, [this] { forget(); });
   service.every(std::chrono::milliseconds(100), [this] {
     const std::lock_guard lock(service_.mutex());
-    if (lacksReference() && latest_state_ == state_at_tick_) waits_ = true;
-    state_at_tick_ = latest_state_;
     const msg::ControllerStatus now = status();
     if (status_pace_.isDue(now)) publish(now);
   });
@@ -67,9 +65,6 @@ void LawRunner::onState(const msg::PlantState& message, const dds::RawSample& sa
   if (const Reading reading = fromMessage(message, service_.scenario().robot.size(), decoded); !reading) {
     return service_.refuse(dds::topics::kPlantState, message.step(), reading);
   }
-  // The plant has gone on: in real time it does so without us.
-  if (lacksReference() && *latest_state_ < message.step() && !std::exchange(waits_, true)) publish(status());
-  latest_state_ = std::max(latest_state_.value_or(0), message.step());
   states_[slot] = decoded;
   holds_[slot] = config_.name == message.holder().c_str();
   checkpoints_[slot] = message.checkpoint();
@@ -112,7 +107,6 @@ void LawRunner::compute(std::uint64_t step) {
   const bool last_command = last_command_step_ == step;  // the step belongs to the next holder, who blends from us
   if (const auto last = inputs_.lastDone(); last && step > *last + 1) skipped_ += step - *last - 1;
   inputs_.done(step);
-  if (step == latest_state_) waits_ = false;
   service_.at(step);
   if (checkpoints_[slot]) checkpoint_out_.save(step, law_);
   parameters_.at(step);
@@ -145,8 +139,7 @@ void LawRunner::forget() {
   law_.rewind();
   parameters_.rewind();
   inputs_ = StepInputs(info_.uses_force ? 3 : 2);
-  latest_state_.reset();
-  waits_ = failing_ = false;
+  failing_ = false;
   owed_.clear();
   last_command_step_.reset();
   fresh_step_.reset();
@@ -249,8 +242,6 @@ void LawRunner::acknowledge(const msg::SwapPlan& plan, bool ready, const JointVe
   ack_out_.write(ack_);
 }
 
-bool LawRunner::lacksReference() const { return latest_state_ && !inputs_.has(kReference, *latest_state_); }
-
 msg::ControllerStatus LawRunner::status() const {
   msg::ControllerStatus status;
   status.name(config_.name);
@@ -258,9 +249,7 @@ msg::ControllerStatus LawRunner::status() const {
   status.uses_force(info_.uses_force);
   status.step(inputs_.lastDone().value_or(0));
   const bool is_cold = !law_.isActive() && !service_.scenario().hot_standby;  // it has computed nothing at that step
-  if (waits_) {
-    status.state(msg::CONTROLLER_WAITING);
-  } else if (!inputs_.lastDone()) {
+  if (!inputs_.lastDone()) {
     status.state(msg::CONTROLLER_STARTING);
   } else if (law_.isActive()) {
     status.state(failing_ ? msg::CONTROLLER_FAILED : msg::CONTROLLER_ACTIVE);

@@ -40,7 +40,6 @@ class LawRunner {
   void acknowledge(const msg::SwapPlan& plan, bool ready, const JointVector& effort, const char* reason);
   [[nodiscard]] bool isQuiet(std::uint64_t step) const;
   void forget();
-  [[nodiscard]] bool lacksReference() const;
   [[nodiscard]] msg::ControllerStatus status() const;
   void publish(const msg::ControllerStatus& status);
   [[nodiscard]] bool isIncoming(const msg::SwapPlan& plan) const;
@@ -52,9 +51,6 @@ class LawRunner {
   const LawInfo& info_;
   ParameterChanges parameters_;
   StepInputs inputs_;
-  std::optional<std::uint64_t> latest_state_;  // its step
-  std::optional<std::uint64_t> state_at_tick_;
-  bool waits_ = false;  // for the reference of a step: the plant is told, lest it takes us for silent
   Window<RobotState> states_;
   Window<bool> holds_{};        // whether PlantState named us
   Window<bool> checkpoints_{};  // whether it asked for our state

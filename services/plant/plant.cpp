@@ -231,15 +231,14 @@ void Plant::tick() {
     missed_in_a_row_ = silent_in_a_row_ = 0;
   } else {
     ++missed_;
-    const bool lacks_reference = waitsForTrajectory(arbiter_.holder());
-    if (!master_.hasCommand() && missing != Hold::kContact && !lacks_reference) ++silent_in_a_row_;
+    if (!master_.hasCommand() && missing != Hold::kContact) ++silent_in_a_row_;
     const bool give_up = ++missed_in_a_row_ > scenario_.max_missed_steps;
     if (give_up) {
       effort_ = arm_.brakeEffort();
     } else if (!master_.hasCommand()) {
       keepTorque();
     }
-    if (silent_in_a_row_ > scenario_.max_missed_steps && !lacks_reference) {
+    if (silent_in_a_row_ > scenario_.max_missed_steps) {
       const int silent = arbiter_.holder();
       service_.event(msg::SEVERITY_ERROR, "missed", arbiter_.nameOf(silent) + " was silent for too many steps");
       Member& one = members_[static_cast<std::size_t>(silent)];
@@ -251,8 +250,7 @@ void Plant::tick() {
       missed_in_a_row_ = silent_in_a_row_ = 0;  // counted anew for whoever is next
     } else if (missed_in_a_row_ == scenario_.max_missed_steps + 1) {
       service_.event(msg::SEVERITY_WARNING, "missed",
-                     std::string(lacks_reference ? "the trajectory" : "the environment") +
-                         " is silent: the brake holds until it speaks again");
+                     "the environment is silent: the brake holds until it speaks again");
     }
   }
   timing_.ticked(now_ns - due_ns.value_or(now_ns), keeps_torque_);
@@ -335,10 +333,6 @@ void Plant::armTimer() {
   });
 }
 
-bool Plant::waitsForTrajectory(int member) const {
-  return member != kBrake && steadyNow() < members_[static_cast<std::size_t>(member)].waits_until_ns;
-}
-
 void Plant::watchLateness() {
   const Hold hold = master_.hold();
   constexpr double kStartWarnAfter_s = 5.0;
@@ -362,14 +356,13 @@ void Plant::watchLateness() {
     return;
   }
   const double late_s = static_cast<double>(steadyNow() - progress_ns_) * 1e-9;
-  const int member = hold == Hold::kCommand    ? arbiter_.holder()
-                     : hold == Hold::kHandover ? arbiter_.outgoingAt(master_.step())
-                     : hold == Hold::kSwap     ? arbiter_.awaitedMember(master_.step())
-                                               : kBrake;
-  const bool lacks_reference = waitsForTrajectory(member);
-  const std::string who = lacks_reference ? "the trajectory" : toString(hold);
+  const std::string who = toString(hold);
   if (late_s > scenario_.late_after_s && scenario_.late_policy != LatePolicy::kWait) {
-    if (scenario_.late_policy == LatePolicy::kAbort || member == kBrake || lacks_reference) {
+    const int member = hold == Hold::kCommand    ? arbiter_.holder()
+                       : hold == Hold::kHandover ? arbiter_.outgoingAt(master_.step())
+                       : hold == Hold::kSwap     ? arbiter_.awaitedMember(master_.step())
+                                                 : kBrake;
+    if (scenario_.late_policy == LatePolicy::kAbort || member == kBrake) {
       return abort("the step waits for " + who + ", too long");
     }
     service_.event(msg::SEVERITY_ERROR, "late", arbiter_.nameOf(member) + " is silent: it is taken for failed");

@@ -112,7 +112,6 @@ class Plant {
   void armTimer();
   void watchLateness();
 
-  [[nodiscard]] bool waitsForTrajectory(int member) const;
   [[nodiscard]] std::string namesWaitedFor() const;
   [[nodiscard]] int memberCalled(std::string_view name) const;
   [[nodiscard]] bool speaksFor(int member, const dds::RawSample& sample) const;
@@ -153,13 +152,11 @@ class Plant {
     Speaker successor;                  // ready before its predecessor was known to have failed
     Refusal refusal;                    // the last one
     ReasonText ails{};                  // why its law has no effort to give, by its latest status; empty: nothing
-    std::int64_t waits_until_ns = 0;    // for the trajectory, as far as it has said: it repeats it once a second
     bool is_lost = false;               // gone, silent, or talking nonsense
     bool is_new = false;                // since it was lost: another process
     bool is_lost_as_planned = false;    // the scenario says so
     bool fails_when_commanded = false;  // the same, once its command for the open step is here
   };
-  static constexpr std::int64_t kWaitingCounts_ns = 2'500'000'000;
   static void becomes(Member& member, const Speaker& speaker);
   std::vector<Member> members_;
   std::map<std::string, Speaker, std::less<>> newcomers_;  // ready controllers that are no members yet

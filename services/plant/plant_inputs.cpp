@@ -124,7 +124,6 @@ void Plant::onServiceStatus(const msg::ServiceStatus& status, const dds::RawSamp
 void Plant::becomes(Member& member, const Speaker& speaker) {
   member.is_new = member.speaker.prefix != speaker.prefix;
   member.speaker = speaker;
-  member.waits_until_ns = 0;
 }
 
 /// Whoever failed and lives goes on computing: it is eligible again once it has answered a later step. As holder it
@@ -132,8 +131,6 @@ void Plant::becomes(Member& member, const Speaker& speaker) {
 void Plant::onControllerStatus(const msg::ControllerStatus& status, const dds::RawSample& sample) {
   const int member = memberCalled(status.name().c_str());
   if (speaksFor(member, sample)) {
-    const bool waits = status.state() == msg::CONTROLLER_WAITING;
-    members_[static_cast<std::size_t>(member)].waits_until_ns = waits ? steadyNow() + kWaitingCounts_ns : 0;
     const bool ails = status.state() == msg::CONTROLLER_FAILED;
     write(members_[static_cast<std::size_t>(member)].ails, "%s", ails ? status.text().c_str() : "");
   }

@@ -103,28 +103,6 @@ INSTANTIATE_TEST_SUITE_P(
                     "silent for too long"}),
     [](const auto& fault) { return fault.param.name; });
 
-class FaultOfTheTrajectory : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
-
-/// No controller can answer without a reference: it is not the holder who is silent, and its fallback would be as well.
-TEST_P(FaultOfTheTrajectory, EndsTheRunInItsNameAndCostsNoController) {
-  const Bench bench;
-  const Outcome outcome = runWith(
-      bench, "silent", kBaton + "late: {policy: fallback, after_s: 3}\nfaults: [" + std::get<1>(GetParam()) + "]\n");
-  EXPECT_EQ(outcome.result.at("exit_code"), 4) << outcome.result;
-  EXPECT_NE(outcome.result.at("reason").get<std::string>().find("the step waits for the trajectory, too long"),
-            std::string::npos)
-      << outcome.result;
-  expectHolderFrom(outcome, kSecondSwap, "pd");
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Each, FaultOfTheTrajectory,
-    ::testing::Values(std::tuple("stopped", "{do: stop, service: trajectory, at_s: 0.2}"),
-                      std::tuple("dropped", "{do: drop, service: trajectory, topic: reference, at_s: 0.2}"),
-                      std::tuple("delayed",
-                                 "{do: delay, service: trajectory, topic: reference, at_s: 0.2, for_s: 60}")),
-    [](const auto& fault) { return std::get<0>(fault.param); });
-
 TEST(FaultScript, WhatOnlyTakesTimeChangesNothingInLockstep) {
   const Bench bench;
   const Outcome undisturbed = runWith(bench, "undisturbed", "");

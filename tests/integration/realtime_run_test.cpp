@@ -7,8 +7,6 @@
 #include <cmath>
 
 #include "msg/loop.h"
-#include "runtime/paths.hpp"
-#include "support/live_run.hpp"
 #include "support/processes.hpp"
 #include "support/recordings.hpp"
 #include "support/short_contact.hpp"
@@ -65,24 +63,6 @@ TEST(RealtimeRun, BrakesWhenItsControllerIsSilent) {
   // No torque is kept for longer, then the brake has its own. A step whose contact is late makes the command no older.
   EXPECT_GE(result.at("timing").at("command_age_steps").at("max"), 1) << result;
   EXPECT_LE(result.at("timing").at("command_age_steps").at("max"), 5) << result;
-}
-
-/// Who waits for a reference cannot answer. The brake holds the arm, and the baton stays where it is.
-TEST(RealtimeRun, ASilentTrajectoryCostsNoControllerTheBaton) {
-  const Bench bench;
-  const LiveRun run(bench, restingContact("mode: realtime\nmax_missed_steps: 50\nbaton: {fallback: [pd]}\n"));
-  run.waitForStep(100);
-  ASSERT_EQ(kill(run.pidOf("trajectory"), SIGSTOP), 0);
-  const auto logOfPlant = [&] { return readFile(run.folder() / "plant.log"); };
-  EXPECT_TRUE(eventually([&] {
-    return logOfPlant().find("the trajectory is silent: the brake holds") != std::string::npos;
-  })) << logOfPlant();
-  const nlohmann::json status = bench.batonJson({"status", "--json"});
-  EXPECT_EQ(status.at("holder"), "tracking") << status;
-  ASSERT_EQ(kill(run.pidOf("trajectory"), SIGCONT), 0);
-  run.waitForStep(status.at("step").get<std::uint64_t>() + 500);
-  EXPECT_EQ(bench.batonJson({"status", "--json"}).at("holder"), "tracking");
-  EXPECT_EQ(bench.baton({"down"}).exit_code, 0);
 }
 
 }  // namespace
