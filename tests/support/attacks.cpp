@@ -335,7 +335,7 @@ const Attack kAttacks[] = {
      }},
     {"refusing_readers", "viewer",
      [](Stranger& stranger, State, Run) { stranger.aside([&] { stranger.refuseAll(dds::topics::kPlantState, 50); }); },
-     "asks for samples again and again", kSays, kIsInVain},
+     "calls itself viewer", kSays, kIsInVain},
     {"user_data", "chatterbox",
      [](Stranger& stranger, State, Run) { stranger.aside([&] { stranger.participant().announce(); }); },
      "calls itself chatterbox", kSays, kIsInVain},

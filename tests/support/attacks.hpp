@@ -9,7 +9,7 @@
 
 namespace baton::test {
 
-inline constexpr const char* kWritesOn = "a stranger writes on";
+inline constexpr const char* kWritesOn = "a stranger writes";
 
 struct Attack {
   const char* name;
