@@ -38,7 +38,8 @@ Matrix3 randomRotation(std::mt19937& generator) {
   return Eigen::Quaterniond(v).toRotationMatrix();
 }
 
-/// Numbers of every magnitude that is accepted, so that a conversion through anything narrower than a double would show.
+/// Numbers of every magnitude that is accepted, so that a conversion through anything narrower than a double would
+/// show.
 template <typename Vector>
 Vector wild(std::mt19937& generator, Eigen::Index rows = Vector::RowsAtCompileTime) {
   Vector v(rows);
