@@ -46,6 +46,11 @@ dds::ParticipantOptions participantOptions(const ReplayOptions& options, const d
   return place;
 }
 
+void tellOfTrespass(const dds::GuidPrefix& stranger, dds::Trespass what) {
+  if (what != dds::Trespass::kSpeaks) return;
+  spdlog::warn("a stranger writes: participant {} has not the replay's key and is not heard", dds::toString(stranger));
+}
+
 Playback::Plan planOf(const ReplayOptions& options) {
   Playback::Plan plan{.rate = options.rate, .passes = options.passes, .starts_paused = options.starts_paused};
   // Log times are counts of ns in 64 bits: no gap is longer.
@@ -73,7 +78,7 @@ Replayer::Replayer(const ReplayOptions& options)
       playlist_(options),
       playback_(planOf(options)),
       own_key_(options.domain, options.cell, options.run),
-      participant_(participantOptions(options, own_key_.key())),
+      participant_(participantOptions(options, own_key_.key()), {}, tellOfTrespass),
       admission_(participant_, false, [](const std::string& text) { spdlog::warn("{}", text); }),
       outlet_(participant_, playlist_.endpoints(),
               [this] {
