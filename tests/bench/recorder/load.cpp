@@ -51,7 +51,7 @@ std::map<Stream, std::uint64_t> countIn(const std::filesystem::path& file, const
   mcap::MessageFilter filter;
   for (int i = 0; i < load.topics; ++i) filter.topics.push_back(loadTopic(i));
   mcap::Reader(file).forEachMessage(filter, [&](const mcap::MessageView& message) {
-    const Stream stream{message.channel->topic, message.channel->metadata.at("service")};
+    const Stream stream{message.channel->topic, message.channel->metadata.at("writer")};
     const std::uint64_t number = Payloads::numberIn(message.data);
     if (number != message.sequence || number <= latest[stream]) return;
     if (message.data.size() < static_cast<std::size_t>(load.bytes)) return;
@@ -98,7 +98,8 @@ Recorded recordUnder(const Load& load, const std::filesystem::path& file, Progra
     WriterCount writer{.name = told.at("name")};
     for (int topic = 0; topic < load.topics; ++topic) {
       writer.sent += told.at("sent").at(static_cast<std::size_t>(topic)).get<std::uint64_t>();
-      const auto found = counts.find({loadTopic(topic), writer.name});
+      const auto guid = told.at("guids").at(static_cast<std::size_t>(topic)).get<std::string>();
+      const auto found = counts.find({loadTopic(topic), guid});
       if (found != counts.end()) writer.recorded += found->second;
     }
     begins_ns.push_back(told.at("begin_ns"));

@@ -76,6 +76,11 @@ class LoadWriters {
     for (const auto& writer : writers_) counts.push_back(writer->count());
     return counts;
   }
+  [[nodiscard]] std::vector<std::string> guids() const {
+    std::vector<std::string> guids;
+    for (const auto& writer : writers_) guids.push_back(dds::toString(writer->guid()));
+    return guids;
+  }
 
  private:
   std::mutex mutex_;
@@ -105,7 +110,8 @@ nlohmann::ordered_json publish(const Plan& plan) {
   return {{"name", plan.name},
           {"begin_ns", begin.time_since_epoch() / std::chrono::nanoseconds(1)},
           {"end_ns", end.time_since_epoch() / std::chrono::nanoseconds(1)},
-          {"sent", writers.counts()}};
+          {"sent", writers.counts()},
+          {"guids", writers.guids()}};
 }
 
 ExitCode run(int argc, char** argv) {
